@@ -1,0 +1,7 @@
+# Warnings and sanitizers for our own code; third-party headers are SYSTEM and stay quiet.
+add_library(splice_warnings INTERFACE)
+target_compile_options(splice_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror)
+if(SPLICE_SANITIZE)
+  add_compile_options(-fsanitize=${SPLICE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${SPLICE_SANITIZE})
+endif()

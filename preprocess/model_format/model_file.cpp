@@ -1,0 +1,68 @@
+#include "preprocess/model_format/error.h"
+#include "preprocess/model_format/model.h"
+#include "preprocess/model_format/posix_open.h"
+
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace splice {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path) {
+    throw SystemError(path.string() + ": cannot read: " + std::strerror(errno));
+}
+
+// Closes on every way out; a mapping outlives its descriptor.
+struct Descriptor {
+    int number;
+    ~Descriptor() {
+        if (number >= 0) close(number);
+    }
+};
+
+std::span<const std::byte> map_file(const std::filesystem::path& path) {
+    const Descriptor file{posix_open::open_for_reading(path.c_str())};
+    struct stat status {};
+    if (file.number < 0 || fstat(file.number, &status) != 0) fail(path);
+    if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "", "not a regular file");
+    const auto size = static_cast<std::size_t>(status.st_size);
+    if (size == 0) return {};  // an empty mapping is an error to mmap; the parser says what is wrong
+    void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file.number, 0);
+    if (memory == MAP_FAILED) fail(path);
+    return {static_cast<const std::byte*>(memory), size};
+}
+
+void unmap(std::span<const std::byte> bytes) {
+    if (!bytes.empty()) munmap(const_cast<std::byte*>(bytes.data()), bytes.size());
+}
+
+}  // namespace
+
+ModelFile::ModelFile(const std::filesystem::path& path) : bytes_(map_file(path)) {
+    try {
+        view_ = parse_model(bytes_, path.string());
+    } catch (...) {
+        unmap(bytes_);
+        throw;
+    }
+}
+
+ModelFile::ModelFile(ModelFile&& other) noexcept
+    : bytes_(std::exchange(other.bytes_, {})), view_(std::exchange(other.view_, {})) {}
+
+ModelFile& ModelFile::operator=(ModelFile&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    std::swap(view_, other.view_);
+    return *this;
+}
+
+ModelFile::~ModelFile() {
+    unmap(bytes_);
+}
+
+}  // namespace splice

@@ -1,0 +1,57 @@
+// Measures that compare a frame with the reference. "Within r pixels" is Euclidean between pixel centres throughout.
+#pragma once
+
+#include "tests/reference/images.h"
+
+#include <cstdint>
+
+namespace splice::reference {
+
+Mask covered(const DepthImage& depth);
+
+/// Pixels whose every neighbour within `radius` is set; outside the image counts as set, so that a surface that runs
+/// out of the frame is not "near its border" there.
+Mask eroded(const Mask& mask, double radius);
+/// Pixels with a set neighbour within `radius`.
+Mask dilated(const Mask& mask, double radius);
+
+/// Peak signal-to-noise ratio in dB over the three channels of 8-bit sRGB; infinity for equal images. With `where`,
+/// over its set pixels only; NaN when there is none. Throws std::invalid_argument when sizes differ.
+double psnr(const ColourImage& image, const ColourImage& reference, const Mask* where = nullptr);
+
+/// Intersection over union of two coverages; 1 when both are empty.
+double silhouette_iou(const Mask& a, const Mask& b);
+
+/// What the check of a frame against the reference found: counts of pixels that break a rule.
+struct SurfaceReport {
+    std::uint64_t inside = 0;    // pixels 2 px inside the reference's coverage
+    std::uint64_t holes = 0;     // of those: background, or a surface behind the tolerated depth
+    std::uint64_t lost = 0;      // reference pixels without cover within 1 px
+    std::uint64_t grown = 0;     // covered pixels farther than allowed from any reference pixel
+    std::uint64_t in_front = 0;  // covered pixels, inside or at the border, nearer than the tolerated depth
+    double worst_behind = 0;  // largest excess over the tolerated depth among the holes with a surface, unit-box units
+    double worst_in_front = 0;
+
+    bool clean() const { return holes + lost + grown + in_front == 0; }
+};
+
+/// Per-pixel tolerances of the check; see surfel_tolerance.h for how surfels determine them.
+struct Tolerance {
+    Raster<float> depth;      // 2 epsilon + spacing of the surfels that may show at a pixel, unit-box units
+    Raster<float> radius_px;  // radius of the largest of their disks on screen
+};
+
+/// `frame` and `reference` hold distances along the view direction. The rules:
+///  - hole: a pixel 2 px inside the reference that shows nothing, or a surface farther than the farthest reference
+///  depth
+///    of its 3x3 neighbourhood plus the tolerance;
+///  - lost: a reference pixel with no covered pixel within 1 px;
+///  - growth: a covered pixel with no reference pixel within max(2, 1 + disk radius) px;
+///  - in front: a covered pixel whose depth is less than the nearest of the 3x3 minus the tolerance (where the 3x3
+///  holds
+///    any reference pixel).
+/// `marked`, if given, receives a picture: grey reference, red holes, blue lost, yellow grown, magenta in front.
+SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference, const Tolerance& tolerance,
+                            ColourImage* marked = nullptr);
+
+}  // namespace splice::reference

@@ -1,0 +1,94 @@
+// Rendering without a window, for programs, tests and benchmarks: one Renderer a device, models loaded into it, frames
+// out of it as plain arrays.
+//
+//   Renderer renderer(RendererOptions{});
+//   auto model = renderer.load(file.view());
+//   CaptureSettings settings;
+//   settings.camera = frame_camera(scene.bounds(), {}, settings.width, settings.height);
+//   Frame frame = renderer.render(scene_of(model), settings);
+#pragma once
+
+#include "engine/passes/view.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+#include "preprocess/model_format/model.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace splice {
+
+struct RendererOptions {
+    std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
+    bool validate = false;        // validation and synchronisation-validation layers
+};
+
+enum class Sides { kAsBaked, kOneSided, kTwoSided };
+
+struct CaptureSettings {
+    std::uint32_t width = 512, height = 512;  // pixels
+    Camera camera;                            // clip planes are set from the scene's bounds when clip_to_scene
+    bool clip_to_scene = true;
+    View view = View::kShaded;
+    Sides sides = Sides::kAsBaked;
+    double epsilon_scale = 1;   // thesis 4.3.1 uses 0.75..1.5; times each surfel's own epsilon
+    bool prefilter = true;      // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
+    bool want_depth = false;    // fill Frame::depth
+    bool want_overlap = false;  // fill FrameStats::overlap_mean
+    bool force_quads = false;   // draw every surfel as an oriented quad, none as a point sprite
+};
+
+struct PassTime {
+    std::string name;
+    double gpu_ms;
+};
+
+struct FrameStats {
+    std::string device;
+    double frame_ms = 0;              // submission to completion of the frame, readback included
+    std::vector<PassTime> passes;     // in order of execution
+    std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
+    std::uint64_t triangles_drawn = 0;
+    std::uint64_t covered_pixels = 0;
+    double overlap_mean = 0;  // surfels contributing to a pixel, over pixels with any; with want_overlap
+};
+
+struct Frame {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;      // sRGB-encoded, rows top to bottom; alpha 255, or coverage where transparent
+    std::vector<std::uint8_t> coverage;  // one a pixel: 255 where a surface is, else 0
+    std::vector<float> depth;            // with want_depth: distance along the view axis to the surface itself (epsilon
+                                         // taken off), world units; infinite where there is none
+    FrameStats stats;
+};
+
+/// Not for use from several threads at once. Frames are a pure function of model, scene and settings: same bytes each
+/// time.
+class Renderer {
+  public:
+    explicit Renderer(const RendererOptions& options);  // throws DeviceError, UsageError (no such device)
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+    ~Renderer();
+
+    /// Uploads; `model` may go away afterwards. The result must not outlive the renderer.
+    std::shared_ptr<const GpuModel> load(const ModelView& model);
+
+    Frame render(const Scene& scene, const CaptureSettings& settings);
+
+    const std::string& device_name() const;
+
+    /// Messages of the validation layers since the renderer was made; always empty without RendererOptions::validate.
+    std::vector<std::string> validation_messages() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// One line a device: "0: llvmpipe (LLVM 15.0.6, 256 bits) [cpu]".
+std::vector<std::string> list_devices();
+
+}  // namespace splice

@@ -1,0 +1,65 @@
+// What a frame shows: model instances, lights and the background. Plain data around models that live on a device.
+#pragma once
+
+#include "engine/scene/camera.h"
+
+#include <memory>
+#include <vector>
+
+namespace splice {
+
+class GpuModel;
+
+/// world = rotation * (source * scale) + translation, source = coordinates of the model's file.
+struct Transform {
+    double scale = 1;             // uniform, > 0
+    glm::dmat3 rotation{1.0};     // orthonormal
+    glm::dvec3 translation{0.0};  // world units
+};
+
+struct Instance {
+    std::shared_ptr<const GpuModel> model;
+    Transform transform;
+};
+
+enum class LightKind { kDirectional, kPoint };
+enum class LightSpace { kCamera, kWorld };
+
+/// Colours are linear RGB. A directional light shines along `direction` with the same strength everywhere; a point
+/// light at `position` fades as 1 / (1 + (distance / range)^2).
+struct Light {
+    LightKind kind = LightKind::kDirectional;
+    LightSpace space = LightSpace::kWorld;  // camera: moves with the eye; x right, y up, z towards the viewer
+    glm::dvec3 direction{0, 0, -1};         // directional: the way the light travels; need not be unit
+    glm::dvec3 position{0.0};               // point
+    double range = 1;                       // point: distance at half strength, world units
+    glm::dvec3 colour{1.0};                 // linear, may exceed 1
+};
+
+/// Ambient plus Lambert; specular (Blinn-Phong) is off unless asked for.
+struct Lighting {
+    glm::dvec3 ambient{0.2};  // linear
+    std::vector<Light> lights;
+    double specular = 0;    // strength, 0 turns it off
+    double shininess = 32;  // Blinn-Phong exponent, >= 1
+};
+
+/// The lights that are used unless a scene names its own: one directional light over the viewer's left shoulder.
+Lighting default_lighting();
+
+struct Background {
+    glm::dvec3 colour{1.0};    // sRGB-encoded, 0..1
+    bool transparent = false;  // alpha is coverage; colour is ignored
+};
+
+struct Scene {
+    std::vector<Instance> instances;
+    Lighting lighting = default_lighting();
+    Background background;
+    Box bounds() const;  // of all instances, world units
+};
+
+/// One model as it is, in the coordinates of its file, under the default lights.
+Scene scene_of(std::shared_ptr<const GpuModel> model);
+
+}  // namespace splice

@@ -1,0 +1,77 @@
+// What every pass knows about the frame and the instance being drawn. The C++ mirror is engine/passes/shader_types.h;
+// tests/engine/test_shader_layouts.cpp compares the two by reflection.
+#ifndef SPLICE_FRAME_GLSL
+#define SPLICE_FRAME_GLSL
+
+// engine/passes/view.h
+const uint VIEW_SHADED = 0;
+const uint VIEW_DEPTH = 1;
+const uint VIEW_VISIBILITY = 2;
+const uint VIEW_ACCUMULATION = 3;
+const uint VIEW_NORMALS = 4;
+const uint VIEW_PATCHES = 5;
+const uint VIEW_REPRESENTATION = 6;
+const uint VIEW_WIREFRAME = 7;
+const uint VIEW_OVERLAP = 8;
+const uint VIEW_SAMPLES = 9;
+
+layout(set = 0, binding = 0, std140) uniform FrameUniforms {
+    mat4 projection;       // view space to clip space, y down, reversed depth
+    vec2 viewport;         // pixels
+    float pixel_scale;     // window pixels per unit at depth 1 (perspective) or anywhere (orthographic)
+    float near_plane;      // depth, world units
+    float far_plane;       // orthographic only
+    uint orthographic;     // 0 or 1
+    uint view;             // VIEW_*
+    uint prefilter;        // 0 or 1
+    vec3 ambient;          // linear
+    uint light_count;
+    float specular;
+    float shininess;
+    float sample_share;    // VIEW_SAMPLES: share of the surfels that is drawn
+    float sample_radius;   // VIEW_SAMPLES: factor on their radii
+} frame;
+
+struct LightRecord {
+    vec4 vector;    // directional: xyz towards the light, view space, unit, w = 0; point: xyz its position, w = 1
+    vec4 colour;    // rgb linear; a = 1 / range^2 of a point light
+};
+layout(set = 0, binding = 1, std430) readonly buffer LightRecords {
+    LightRecord lights[];
+};
+
+const uint INSTANCE_TWO_SIDED = 1;
+
+layout(push_constant, std430) uniform InstanceConstants {
+    vec4 model_to_view[3];  // rows of the affine map from unit-box to view space: uniform scale, rotation, translation
+    float scale;            // world units per unit-box unit
+    float epsilon_scale;    // the user's
+    uint flags;             // INSTANCE_*
+    uint first_patch;       // added to patch numbers, so that instances get different colours
+} instance;
+
+vec3 to_view_space(vec3 position) {
+    const vec4 p = vec4(position, 1);
+    return vec3(dot(instance.model_to_view[0], p), dot(instance.model_to_view[1], p), dot(instance.model_to_view[2], p));
+}
+
+vec3 normal_to_view_space(vec3 normal) {
+    return normalize(vec3(dot(instance.model_to_view[0].xyz, normal), dot(instance.model_to_view[1].xyz, normal),
+                          dot(instance.model_to_view[2].xyz, normal)));
+}
+
+// From a point of view space towards the eye, not normalised.
+vec3 towards_eye(vec3 position) { return frame.orthographic != 0 ? vec3(0, 0, 1) : -position; }
+
+// Depth buffer value of a depth (distance along the view axis); nearer is greater.
+float encode_depth(float depth) {
+    return frame.orthographic != 0 ? (frame.far_plane - depth) / (frame.far_plane - frame.near_plane)
+                                   : frame.near_plane / depth;
+}
+
+float decode_depth(float value) {
+    return frame.orthographic != 0 ? frame.far_plane - value * (frame.far_plane - frame.near_plane)
+                                   : frame.near_plane / value;
+}
+
+#endif

@@ -1,0 +1,169 @@
+// From a surfel to its footprint on screen, and from a pixel back to the surfel: shared by the visibility and the
+// attribute pass, so that both cover the same pixels and measure the same depths.
+//
+// The ray of the pixel at offset d (pixels) from the projection of an anchor point P of the surfel's plane meets the
+// plane at the disk coordinates (u, v), in radii, and at the depth t:
+//   perspective   e = 1 + g.d,  (u, v) = a + A d / e,  t = t_P / e
+//   orthographic  e = 1,        (u, v) = a + A d,      t = t_P - g.d
+// which is the ray-plane intersection of Botsch et al. (thesis 3.4.2, figure 3.8) with everything that does not depend
+// on the pixel moved to the vertex stage, and, being relative to P, without its cancellation far from the origin.
+// P is the centre (a = 0) unless the disk crosses the near plane; then P is the disk's farthest point (|a| = 1), which
+// projects safely. Needs frame.glsl.
+#ifndef SPLICE_SPLAT_GLSL
+#define SPLICE_SPLAT_GLSL
+
+struct Splat {
+    vec2 anchor;        // window position of P
+    vec4 plane_map;     // A, column by column
+    vec4 plane;         // g, t_P, and 1 if P is the centre, else 0
+    vec2 plane_offset;  // a
+    vec2 interval;      // nearest and farthest depth of the disk
+    float epsilon;      // by how much the visibility pass moves depth away, along the ray, world units
+    vec3 conic;         // V^-1: xx, xy, yy; V the resampling covariance, thesis 3.22
+    float weight;       // of the splat's centre, in (0, 1]
+    vec4 disk_bounds;   // window pixels: minimum, maximum of the disk
+    vec4 splat_bounds;  // the same of the EWA footprint, disk included
+};
+
+// At grazing angles neighbouring disks, tilted against each other, disagree along the ray by more than the baked
+// epsilon, which bounds how far they are apart across the surface. Two disks tilted by TILT disagree by at most
+// epsilon * TILT perpendicular to the surface (point-and-edge, equation 8), along the ray by that over the cosine of
+// the viewing angle; beyond MAX_STRETCH, hidden surfaces would begin to shine through.
+const float TILT = 0.3;
+const float MAX_STRETCH = 3.0;
+// Edge-on planes are hit nowhere; keeps the divisions finite.
+const float MIN_COSINE = 1e-6;
+const float MIN_WEIGHT = 1.0 / 4096.0;
+const float NOWHERE = 1e18;
+
+void tangents_of(vec3 n, out vec3 s, out vec3 t) {
+    // Duff et al. 2017, "Building an orthonormal basis, revisited".
+    const float side = n.z >= 0 ? 1.0 : -1.0;
+    const float a = -1 / (side + n.z);
+    const float b = n.x * n.y * a;
+    s = vec3(1 + side * n.x * n.x * a, side * b, -side * n.x);
+    t = vec3(b, side + n.y * n.y * a, -n.y);
+}
+
+vec2 project_to_window(vec3 p) {
+    const vec2 q = frame.orthographic != 0 ? p.xy : p.xy / -p.z;
+    return frame.viewport * 0.5 + frame.pixel_scale * vec2(q.x, -q.y);
+}
+
+// Extremes over the disk of the image coordinate (c + r (s cos + t sin)) / (depth of the same), the roots k of
+// |r (s - k s_d, t - k t_d)| = |c - k d|. `c`, `s`, `t`: one coordinate of centre and tangents; `d`, `sd`, `td`: depths.
+vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, float r) {
+    const float r2 = r * r;
+    const float qa = d * d - r2 * (sd * sd + td * td);
+    const float qb = c * d - r2 * (s * sd + t * td);
+    const float qc = c * c - r2 * (s * s + t * t);
+    const float root = sqrt(max(qb * qb - qa * qc, 0));
+    return vec2(qb - root, qb + root) / qa;
+}
+
+// `centre` and unit `normal` in view space, `radius` and `epsilon` in world units. False: nothing of it can be seen.
+bool make_splat(vec3 centre, vec3 normal, float radius, float epsilon, out Splat splat) {
+    const bool orthographic = frame.orthographic != 0;
+    vec3 s, t;
+    tangents_of(normal, s, t);
+    const float depth = -centre.z;
+    const vec2 slope = vec2(-s.z, -t.z);  // change of depth along the tangents
+    const float steepness = length(slope);
+    splat.interval = vec2(depth - radius * steepness, depth + radius * steepness);
+    if (splat.interval.y <= frame.near_plane) return false;
+    const bool crosses_near = splat.interval.x < frame.near_plane;
+
+    vec3 p = centre;
+    splat.plane_offset = vec2(0);
+    if (crosses_near) {
+        splat.plane_offset = steepness > 0 ? slope / steepness : vec2(1, 0);
+        p += radius * (splat.plane_offset.x * s + splat.plane_offset.y * t);
+    }
+    const float anchor_depth = -p.z;
+    const vec3 ray = orthographic ? vec3(0, 0, -1) : vec3(p.xy / anchor_depth, -1);
+    float facing = dot(normal, ray);
+    if (abs(facing) < MIN_COSINE) facing = facing < 0 ? -MIN_COSINE : MIN_COSINE;
+    const vec3 dx = vec3(1 / frame.pixel_scale, 0, 0), dy = vec3(0, -1 / frame.pixel_scale, 0);
+    const vec2 g = vec2(dot(normal, dx), dot(normal, dy)) / facing;
+    const float reach = (orthographic ? 1 : anchor_depth) / radius;
+    const vec3 along_x = (dx - g.x * ray) * reach, along_y = (dy - g.y * ray) * reach;
+    splat.anchor = project_to_window(p);
+    splat.plane_map = vec4(dot(s, along_x), dot(t, along_x), dot(s, along_y), dot(t, along_y));
+    splat.plane = vec4(g, anchor_depth, crosses_near ? 0 : 1);
+    splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
+
+    if (crosses_near) {
+        // No affine approximation holds here; the exact disk alone decides, wherever on the screen that is.
+        splat.conic = vec3(NOWHERE, 0, NOWHERE);
+        splat.weight = 1;
+        splat.disk_bounds = splat.splat_bounds = vec4(0, 0, frame.viewport);
+        return true;
+    }
+
+    // Rows of J times the radius: how the window position changes along the tangents.
+    const float eta = frame.pixel_scale * radius;
+    vec2 jx, jy;
+    if (orthographic) {
+        jx = eta * vec2(s.x, t.x);
+        jy = -eta * vec2(s.y, t.y);
+        const vec2 extent = vec2(length(jx), length(jy));
+        splat.disk_bounds = vec4(splat.anchor - extent, splat.anchor + extent);
+    } else {
+        jx = eta / depth * (vec2(s.x, t.x) - slope * (centre.x / depth));
+        jy = -eta / depth * (vec2(s.y, t.y) - slope * (centre.y / depth));
+        const vec2 x = projected_extremes(centre.x, s.x, t.x, depth, slope.x, slope.y, radius);
+        const vec2 y = projected_extremes(-centre.y, -s.y, -t.y, depth, slope.x, slope.y, radius);
+        splat.disk_bounds = frame.viewport.xyxy * 0.5 + frame.pixel_scale * vec4(x.x, y.x, x.y, y.y);
+    }
+    if (frame.prefilter == 0) {
+        splat.conic = vec3(NOWHERE, 0, NOWHERE);
+        splat.weight = 1;
+        splat.splat_bounds = splat.disk_bounds;
+        return true;
+    }
+    // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1.
+    const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * 0.5 + vec3(1, 0, 1);
+    const float determinant = v.x * v.z - v.y * v.y;
+    splat.conic = vec3(v.z, -v.y, v.x) / determinant;
+    // A Gaussian of height 1 on the surface, filtered by the pixel's of volume 1: sqrt(|J V_r J^T| / |V|). Splats
+    // smaller than a pixel count by the area they cover.
+    splat.weight = max(0.5 * abs(jx.x * jy.y - jx.y * jy.x) * inversesqrt(determinant), MIN_WEIGHT);
+    const vec2 extent = sqrt(2 * vec2(v.x, v.z));
+    splat.splat_bounds = vec4(min(splat.disk_bounds.xy, splat.anchor - extent),
+                              max(splat.disk_bounds.zw, splat.anchor + extent));
+    return true;
+}
+
+struct SplatHit {
+    bool on_disk;     // the ray meets the disk, or the pixel holds the centre of a disk that it misses
+    float depth;      // of the surface there, on the disk's plane clamped to the disk's interval
+    float distance2;  // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
+};
+
+SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec4 plane, vec2 plane_offset, vec2 interval) {
+    const vec2 d = pixel - anchor;
+    const float gd = dot(plane.xy, d);
+    const float e = frame.orthographic != 0 ? 1 : 1 + gd;
+    const vec2 uv = plane_map.xy * d.x + plane_map.zw * d.y + plane_offset * e;
+    const float distance2 = dot(uv, uv);
+    const float plane_depth = frame.orthographic != 0 ? plane.z - gd : (e > 0 ? plane.z / e : interval.y);
+    SplatHit hit;
+    hit.depth = clamp(plane_depth, interval.x, interval.y);
+    hit.on_disk = e > 0 && distance2 <= e * e && plane_depth >= frame.near_plane;
+    hit.distance2 = hit.on_disk ? distance2 / (e * e) : NOWHERE;
+    // A disk may lie between pixel centres; then it shows at the pixel that holds its centre.
+    if (!hit.on_disk && plane.w != 0 && floor(pixel) == floor(anchor)) {
+        hit.on_disk = true;
+        hit.depth = plane.z;
+    }
+    return hit;
+}
+
+// Depth moved away from the eye along the pixel's ray by `epsilon`.
+float push_back(float depth, float epsilon, vec2 pixel) {
+    if (frame.orthographic != 0) return depth + epsilon;
+    return depth + epsilon * inversesqrt(1 + dot(pixel - frame.viewport * 0.5, pixel - frame.viewport * 0.5) /
+                                                 (frame.pixel_scale * frame.pixel_scale));
+}
+
+#endif

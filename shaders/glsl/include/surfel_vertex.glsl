@@ -1,0 +1,60 @@
+// Vertex stage of both surfel passes: a record of the model file in, a splat and the primitive around it out. As a
+// point sprite the vertex is the surfel; as a quad (too large for a point, or centred off the screen) four vertices an
+// instance span the footprint's bounds. Needs frame.glsl, octahedral.glsl, splat.glsl.
+#ifndef SPLICE_SURFEL_VERTEX_GLSL
+#define SPLICE_SURFEL_VERTEX_GLSL
+
+layout(constant_id = 0) const bool AS_QUADS = false;
+
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in float in_radius;
+layout(location = 2) in vec2 in_normal;   // octahedral
+layout(location = 3) in vec4 in_colour;   // sRGB-encoded
+layout(location = 4) in float in_epsilon;
+layout(location = 5) in uint in_patch;
+
+const float SLACK_PX = 0.05;  // rasterisers snap positions to 1/256 pixel or so
+
+uint surfel_number() { return AS_QUADS ? gl_InstanceIndex : gl_VertexIndex; }
+
+bool in_sample(uint number) {
+    uint h = number * 0x9e3779b9u;
+    h ^= h >> 16;
+    h *= 0x85ebca6bu;
+    h ^= h >> 13;
+    return float(h >> 8) < frame.sample_share * 16777216.0;
+}
+
+// The splat of this vertex's surfel; false if it is not to be drawn.
+bool surfel_splat(out Splat splat, out vec3 centre, out vec3 normal) {
+    centre = to_view_space(in_position);
+    normal = normal_to_view_space(decode_octahedral(in_normal));
+    const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
+    if (!two_sided && dot(normal, towards_eye(centre)) <= 0) return false;
+    float radius = in_radius * instance.scale;
+    if (frame.view == VIEW_SAMPLES) {
+        if (!in_sample(surfel_number())) return false;
+        radius *= frame.sample_radius;
+    }
+    return make_splat(centre, normal, radius, in_epsilon * instance.scale * instance.epsilon_scale, splat);
+}
+
+// Places this vertex so that the primitive covers every pixel of `bounds` and the one that holds the centre.
+void place_primitive(bool drawn, vec2 anchor, vec4 bounds) {
+    gl_PointSize = 1;
+    gl_Position = vec4(2, 2, 2, 1);  // clipped
+    if (!drawn) return;
+    vec2 window = anchor;
+    if (AS_QUADS) {
+        const vec2 low = max(min(bounds.xy, floor(anchor)) - SLACK_PX, vec2(-1));
+        const vec2 high = min(max(bounds.zw, floor(anchor) + 1) + SLACK_PX, frame.viewport + 1);
+        if (any(greaterThanEqual(low, high))) return;
+        window = vec2((gl_VertexIndex & 1) != 0 ? high.x : low.x, (gl_VertexIndex & 2) != 0 ? high.y : low.y);
+    } else {
+        const vec2 reach = max(anchor - bounds.xy, bounds.zw - anchor);
+        gl_PointSize = max(2 * (max(reach.x, reach.y) + SLACK_PX), 1 + 2 * SLACK_PX);
+    }
+    gl_Position = vec4(window / frame.viewport * 2 - 1, 0.5, 1);
+}
+
+#endif

@@ -1,0 +1,40 @@
+// Normalisation (thesis 3.4.2): sums over weights where surfels own the pixel, the triangles' colour elsewhere. Drawn
+// twice, the stencil value of the visibility pass telling the two apart.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame.glsl"
+#include "colour.glsl"
+
+layout(constant_id = 0) const bool SURFELS = false;
+
+layout(input_attachment_index = 0, set = 1, binding = 0) uniform subpassInput triangle_colour;
+layout(input_attachment_index = 1, set = 1, binding = 1) uniform subpassInput accumulation;
+layout(input_attachment_index = 2, set = 1, binding = 2) uniform subpassInput depth;
+
+// Colours: sRGB-encoded, alpha is coverage. Views of numbers (depth, visibility, overlap): the number in red, which
+// lands in a float target; visibility is negative where surfels own the pixel.
+layout(location = 0) out vec4 out_colour;
+
+void main() {
+    const vec4 triangles = subpassLoad(triangle_colour);
+    const vec4 sum = subpassLoad(accumulation);
+    if (!SURFELS && triangles.a == 0) discard;
+    if (frame.view == VIEW_VISIBILITY) {
+        const float eye_depth = decode_depth(subpassLoad(depth).r);
+        out_colour = vec4(SURFELS ? -eye_depth : eye_depth, 0, 0, 1);
+        return;
+    }
+    if (frame.view == VIEW_OVERLAP) {
+        out_colour = vec4(SURFELS ? sum.a : 0, 0, 0, 1);
+        return;
+    }
+    const vec3 linear = SURFELS ? sum.rgb / sum.a : triangles.rgb;
+    if (frame.view == VIEW_DEPTH || frame.view == VIEW_NORMALS) {
+        out_colour = vec4(linear, 1);
+    } else if (frame.view == VIEW_ACCUMULATION) {
+        // Half scale: two fully weighted splats reach white's level.
+        out_colour = vec4(encode_srgb(SURFELS ? 0.5 * sum.rgb : vec3(0)), 1);
+    } else {
+        out_colour = vec4(encode_srgb(linear), 1);
+    }
+}

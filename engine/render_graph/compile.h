@@ -1,0 +1,40 @@
+// Declaration -> plan. A pure function: no device, no clock, no randomness; equal input gives equal output.
+#pragma once
+
+#include "engine/render_graph/graph.h"
+#include "engine/render_graph/plan.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace splice::graph {
+
+/// Sizes that the device reports for a resource; only the executor knows them.
+struct MemoryRequirement {
+    uint64_t size = 0;       ///< bytes
+    uint64_t alignment = 1;  ///< bytes, a power of two
+    uint32_t memory_type_bits = 0;
+};
+
+struct CompileOptions {
+    /// Limits of the device (defaults: what Vulkan guarantees, with lavapipe's and common GPUs' 8 colour attachments).
+    uint32_t max_colour_attachments = 8;
+    uint32_t max_input_attachments = 4;
+    // Switches, each of which changes cost and never the image.
+    bool cull = true;
+    bool merge = true;
+    bool alias = true;  ///< transients that never live together may share memory; needs `memory`
+    /// One a declared resource, or empty: then nothing is placed. The entries of imported resources are ignored.
+    std::span<const MemoryRequirement> memory;
+};
+
+/// Throws GraphError for what a single declaration call cannot see: attachments of different size or sample count in
+/// one pass, more attachments than the limits allow.
+Plan compile(const Graph& graph, const CompileOptions& options = {});
+
+/// One sentence each, with the names of passes and resources.
+std::string explain(const Graph& graph, const CulledPass& culled);
+std::string explain(const Graph& graph, const Unmerged& unmerged);
+
+}  // namespace splice::graph

@@ -1,0 +1,113 @@
+// Runs compiled graphs on a device. Everything a plan needs (render passes, framebuffers, transient images and buffers)
+// is made when a declaration is first seen and kept, so a steady frame creates nothing.
+//
+//   graph::Executor executor(device);
+//   graph::Bindings bindings;
+//   bindings.bind(pixels, readback_buffer);
+//   device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(frame, bindings, commands); });
+//   for (const graph::PassTiming& timing : executor.timings()) ...
+//
+// In a record function:
+//   void draw(const graph::PassContext& context) {
+//       VkPipeline pipeline = pipelines.get(context, [&] {           // graph::PassPipelines pipelines;
+//           gpu::GraphicsPipelineOptions options = ...;              // render pass and subpass are filled in
+//           return options; });
+//       vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+//   }
+// Input attachments: DescriptorWriter(set).input_attachment(0, context.view(colour),
+// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL); depth: context.depth_view(depth),
+// VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL. Storage images: GENERAL.
+#pragma once
+
+#include "engine/render_graph/compile.h"
+#include "engine/render_graph/executor/pass_context.h"
+#include "engine/render_graph/graph.h"
+#include "engine/render_graph/plan.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/device.h"
+#include "engine/vulkan/image.h"
+#include "engine/vulkan/pipeline.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace splice::graph {
+
+/// The real resources behind the imported ones of a graph.
+class Bindings {
+  public:
+    void bind(ImageHandle handle, const gpu::Image& image);
+    void bind(ImageHandle handle, const BoundImage& image);  ///< e.g. of a swapchain
+    void bind(BufferHandle handle, const gpu::Buffer& buffer);
+
+  private:
+    friend class Executor;
+    std::vector<std::pair<uint32_t, BoundResource>> resources_;
+};
+
+struct ExecutorOptions {
+    uint32_t frames_in_flight = 1;
+    bool timestamps = true;  ///< where the device has them
+    /// Compiled plans kept, with their transient resources; the one unused for longest goes first.
+    uint32_t max_plans = 8;
+    bool cull = true, merge = true, alias = true;  ///< as in CompileOptions
+};
+
+struct PassTiming {
+    std::string name;
+    double gpu_ms = 0;  ///< from the end of the pass recorded before it to its own end
+};
+
+struct ExecutorStatistics {
+    uint64_t compilations = 0;     ///< plans made, since the start
+    uint64_t objects_created = 0;  ///< Vulkan objects, since the start: constant while frames are steady
+    // Of the last execution:
+    uint32_t passes = 0, render_passes = 0, barrier_commands = 0, image_barriers = 0, buffer_barriers = 0;
+    uint64_t transient_bytes = 0;
+};
+
+class Executor {
+  public:
+    /// The device must outlive the executor.
+    explicit Executor(gpu::Device& device, const ExecutorOptions& options = {});
+    ~Executor();
+    Executor(const Executor&) = delete;
+    Executor& operator=(const Executor&) = delete;
+
+    /// Records the whole frame, compiling the graph if its structure is new. frame_slot < frames_in_flight: the work
+    /// submitted for this slot before has finished. Throws GraphError (an imported resource that is not bound, or does
+    /// not match its declaration) and DeviceError.
+    void execute(const Graph& graph, const Bindings& bindings, VkCommandBuffer commands, uint32_t frame_slot = 0);
+
+    /// The plan of the last execution.
+    const Plan& plan() const;
+    /// Times of the passes of the slot's last execution, in recorded order, once it has finished; empty without
+    /// timestamps. Software rasterisers do the work of a render pass where it ends, so there its subpasses share
+    /// unevenly.
+    std::vector<PassTiming> timings(uint32_t frame_slot = 0) const;
+    const ExecutorStatistics& statistics() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The graphics pipelines of one drawing routine, one for each subpass that it is recorded in.
+class PassPipelines {
+  public:
+    /// `options` is called when (render pass, subpass) is new; render_pass, subpass and samples are filled in here.
+    VkPipeline get(const gpu::Device& device, const PassContext& context,
+                   const std::function<gpu::GraphicsPipelineOptions()>& options);
+
+  private:
+    std::map<std::pair<VkRenderPass, uint32_t>, gpu::GraphicsPipeline> pipelines_;
+};
+
+}  // namespace splice::graph

@@ -14,9 +14,10 @@ std::int64_t clamp_pixel(double position, std::uint32_t size) {
 
 Tolerance surfel_tolerance(const ModelView& model, const ReferenceView& view, const DepthImage& reference,
                            float epsilon_scale, float floor) {
-    Tolerance result{Raster<float>(view.width, view.height, floor), Raster<float>(view.width, view.height, 0.0f)};
-    const double focal_px = 0.5 * view.height * std::abs(view.projection[1][1]);
     const double unit = std::cbrt(std::abs(glm::determinant(glm::dmat3(view.view))));  // uniform scale, mesh -> eye
+    Tolerance result{Raster<float>(view.width, view.height, static_cast<float>(floor * unit)),
+                     Raster<float>(view.width, view.height, 0.0f)};
+    const double focal_px = 0.5 * view.height * std::abs(view.projection[1][1]);
     for (const format::Surfel& surfel : model.surfels) {
         const glm::dvec4 eye = view.view * glm::dvec4(surfel.position[0], surfel.position[1], surfel.position[2], 1);
         const glm::dvec4 clip = view.projection * eye;

@@ -11,7 +11,8 @@ namespace splice::reference {
 /// 1 px prefilter) holds the pixel's centre and which lie at the reference's depth there: not the surfels behind it,
 /// which are hidden and may be coarser. A pixel that the reference leaves empty takes every surfel that reaches it.
 /// `epsilon_scale` is the frame's; format::Surfel::epsilon is both the unscaled epsilon and the spacing. Pixels that no
-/// surfel reaches get `floor`, the rounding of a depth buffer, as do all others at least.
+/// surfel reaches get `floor`, the rounding of a depth buffer in unit-box units, as do all others at least. Results are
+/// in the view's units.
 Tolerance surfel_tolerance(const ModelView& model, const ReferenceView& view, const DepthImage& reference,
                            float epsilon_scale = 1, float floor = 1e-5f);
 

@@ -1,0 +1,140 @@
+#include "engine/bench/bench_bake.h"
+
+#include "engine/bench/table.h"
+#include "preprocess/model_format/error.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+
+namespace splice::bench {
+namespace {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::array kStages{"read", "repair", "cluster", "simplify", "sample", "prune", "write", "total"};
+
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::string pattern = (fs::temp_directory_path() / "splice-bench-XXXXXX").string();
+        if (!mkdtemp(pattern.data())) throw SystemError("cannot create a temporary folder like " + pattern);
+        path_ = pattern;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+/// Waits for it; its messages go where ours go. Throws SystemError unless it exits with 0.
+void run(const std::vector<std::string>& command) {
+    std::vector<char*> argv;
+    for (const std::string& word : command)
+        argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    if (const int error = posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ))
+        throw SystemError(command[0] + ": " + std::system_category().message(error));
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR) throw SystemError(command[0] + ": cannot wait for it");
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw SystemError(command[0] + " failed on " + command[1]);
+}
+
+json bake_once(const fs::path& mesh, const std::vector<std::string>& arguments) {
+    const ScratchFolder scratch;
+    const fs::path stats = scratch.path() / "stats.json";
+    std::vector<std::string> command{(fs::read_symlink("/proc/self/exe").parent_path() / "splice-bake").string(),
+                                     mesh.string(),
+                                     "-o",
+                                     (scratch.path() / "model.splice").string(),
+                                     "--stats",
+                                     stats.string(),
+                                     "--quiet"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    run(command);
+    std::ifstream file(stats);
+    return json::parse(file);
+}
+
+double median_of(const std::vector<json>& runs, const json::json_pointer& figure) {
+    std::vector<double> values;
+    for (const json& run : runs)
+        values.push_back(run.at(figure).get<double>());
+    return median(std::move(values));
+}
+
+}  // namespace
+
+json bench_bake(const std::vector<BenchModel>& models, const BakeBenchOptions& options) {
+    json report = json::array();
+    std::vector<std::string> header{"seconds"};
+    for (const char* stage : kStages)
+        header.emplace_back(stage);
+    header.insert(header.end(), {"thesis", "cluster ktri/s", "MB", "MB allowed"});
+    Table times(header);
+    Table results({"results", "triangles", "kept %", "thesis %", "patches t/s", "auc", "surfels", "thesis/ours",
+                   "coverage", "file MB"});
+    for (const BenchModel& model : models) {
+        std::vector<json> runs;
+        for (int i = 0; i < options.runs; ++i) {
+            if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[Kbake {} {}/{}", model.name, i + 1, options.runs);
+            runs.push_back(bake_once(model.path, options.arguments));
+        }
+        if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
+
+        std::vector<std::string> row{model.name};
+        json seconds;
+        for (const char* stage : kStages) {
+            const double value = median_of(runs, json::json_pointer("/seconds") / stage);
+            seconds[stage] = value;
+            row.push_back(fmt::format("{:.3f}", value));
+        }
+        const json& last = runs.back();
+        const auto in = last.at("/input/triangles"_json_pointer).get<double>();
+        const auto kept = last.at("/output/triangles"_json_pointer).get<double>();
+        const auto surfels = last.at("/output/surfels"_json_pointer).get<double>();
+        const double memory = median_of(runs, "/peak_rss_bytes"_json_pointer);
+        const double cluster_rate = in / seconds["cluster"].get<double>();
+        row.push_back(model.published ? fmt::format("{:.0f}", model.published->bake_seconds) : "");
+        row.push_back(fmt::format("{:.0f}", cluster_rate / 1e3));
+        row.push_back(fmt::format("{:.0f}", memory / 1e6));
+        row.push_back(fmt::format("{:.0f}", 64 + in / 1e3));
+        times.add(row);
+        results.add({model.name, fmt::format("{:.0f}", in), fmt::format("{:.1f}", 100 * kept / in),
+                     model.published
+                         ? fmt::format("{:.1f}", 100 * model.published->triangles_kept / model.published->triangles_in)
+                         : "",
+                     fmt::format("{}/{}", last.at("/patches/triangle"_json_pointer).get<std::uint64_t>(),
+                                 last.at("/patches/surfel"_json_pointer).get<std::uint64_t>()),
+                     fmt::format("{:.3f}", last.at("/selection/auc"_json_pointer).get<double>()),
+                     fmt::format("{:.0f}", surfels),
+                     model.published && surfels > 0 ? fmt::format("{:.1f}", model.published->surfels / surfels) : "",
+                     fmt::format("{:.2f}", last.at("/output/coverage_mean"_json_pointer).get<double>()),
+                     fmt::format("{:.1f}", last.at("/output/file_bytes"_json_pointer).get<double>() / 1e6)});
+        report.push_back({{"model", model.name},
+                          {"median_seconds", seconds},
+                          {"cluster_triangles_per_second", cluster_rate},
+                          {"median_peak_rss_bytes", memory},
+                          {"runs", runs}});
+    }
+    fmt::print("{}\n{}", times.text(), results.text());
+    return report;
+}
+
+}  // namespace splice::bench

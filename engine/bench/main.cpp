@@ -1,0 +1,151 @@
+// splice-bench: measures the bake, the frames and their truth. Not a test: figures depend on the machine.
+#include "engine/bench/bench_bake.h"
+#include "engine/bench/bench_quality.h"
+#include "preprocess/model_format/atomic_file.h"
+#include "preprocess/model_format/error.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <map>
+
+namespace {
+using namespace splice;
+namespace fs = std::filesystem;
+
+struct CommandLine {
+    std::vector<fs::path> files;
+    fs::path folder;
+    fs::path json;
+    bench::BakeBenchOptions bake;
+    bench::QualityOptions quality;
+    std::string size = "512x512";
+};
+
+fs::path default_folder() {
+    const char* from_environment = std::getenv("SPLICE_MODELS");
+    return from_environment ? from_environment : "../shared/models";
+}
+
+void add_common(CLI::App& command, CommandLine& line) {
+    command.add_option("MESH", line.files,
+                       "Meshes; without any: the thesis's five models and Debian's bunny.obj, if found");
+    command
+        .add_option("--models", line.folder,
+                    "Folder of the thesis's models, in its subfolder meshes (or $SPLICE_MODELS)")
+        ->capture_default_str();
+    command.add_option("--json", line.json, "Write all figures to this file");
+}
+
+void add_quality(CLI::App& command, CommandLine& line, std::size_t directions) {
+    line.quality.directions = directions;
+    command.add_option("--device", line.quality.device, "auto, cpu, or an index of splice-capture --list-devices")
+        ->capture_default_str();
+    command.add_option("--size", line.size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
+    command.add_flag("--orthographic", line.quality.orthographic, "Parallel rays");
+    command.add_option("--epsilon-scale", line.quality.epsilon_scale, "Times each surfel's depth offset")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        .add_option("--triangle-share", line.quality.bake.cluster.triangle_share,
+                    "Share of the triangles that the bake keeps as triangles, 0..1")
+        ->check(CLI::Range(0.0, 1.0));
+    command.add_option("--pictures", line.quality.pictures, "Write frames, reference and errors to this folder");
+}
+
+/// WIDTHxHEIGHT into the options.
+void parse_size(CommandLine& line) {
+    unsigned width = 0, height = 0;
+    char rest = 0;
+    if (std::sscanf(line.size.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
+        throw UsageError("--size: expected WIDTHxHEIGHT in pixels, got " + line.size);
+    line.quality.width = width;
+    line.quality.height = height;
+}
+
+int run(int argc, char** argv) {
+    CommandLine line;
+    line.folder = default_folder();
+    CLI::App app("Measures splice: bake times and memory, frame times, truth and holes against a ray-cast reference.");
+    app.require_subcommand(1);
+
+    CLI::App& bake = *app.add_subcommand("bake", "Seconds a stage, peak memory and results of splice-bake");
+    add_common(bake, line);
+    bake.add_option("--runs", line.bake.runs, "Medians are taken over this many bakes")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    bake.add_option("--with", line.bake.arguments, "An argument for splice-bake, e.g. --with=--triangle-share=0.19")
+        ->take_all();
+
+    CommandLine capture_line = line, holes_line = line;
+    CLI::App& capture =
+        *app.add_subcommand("capture", "PSNR of hybrid and triangles against 64 samples a pixel; frame times");
+    add_common(capture, capture_line);
+    add_quality(capture, capture_line, 1);
+    capture
+        .add_option("--directions", capture_line.quality.directions,
+                    "1: the default view; more: of 26 around the model")
+        ->check(CLI::Range(1, 26))
+        ->capture_default_str();
+    capture.add_option("--frames", capture_line.quality.frames, "Timed frames a model")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+
+    CLI::App& holes =
+        *app.add_subcommand("holes", "Holes, lost features and growth, from all sides; exit code 1 if any");
+    add_common(holes, holes_line);
+    add_quality(holes, holes_line, 26);
+    holes.add_option("--directions", holes_line.quality.directions, "How many of the 26 directions around the model")
+        ->check(CLI::Range(1, 26))
+        ->capture_default_str();
+    const std::map<std::string, ForcedRepresentation> representations{{"hybrid", ForcedRepresentation::kHybrid},
+                                                                      {"triangles", ForcedRepresentation::kTriangles},
+                                                                      {"surfels", ForcedRepresentation::kSurfels}};
+    holes
+        .add_option("--representation", holes_line.quality.bake.cluster.representation, "hybrid, triangles or surfels")
+        ->transform(CLI::CheckedTransformer(representations).description(""));
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help
+        throw UsageError(error.what());
+    }
+
+    nlohmann::json report;
+    fs::path report_file;
+    bool clean = true;
+    if (bake.parsed()) {
+        report_file = line.json;
+        if (!report_file.empty()) check_output_path(report_file);
+        report = bench::bench_bake(bench::bench_models(line.files, line.folder), line.bake);
+    } else {
+        CommandLine& chosen = capture.parsed() ? capture_line : holes_line;
+        parse_size(chosen);
+        report_file = chosen.json;
+        if (!report_file.empty()) check_output_path(report_file);
+        const auto models = bench::bench_models(chosen.files, chosen.folder);
+        report = capture.parsed() ? bench::bench_capture(models, chosen.quality)
+                                  : bench::bench_holes(models, chosen.quality);
+        clean = report.value("clean", true);
+    }
+    if (!report_file.empty()) write_text_file(report_file, report.dump(2) + "\n");
+    return clean ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const splice::UsageError& error) {
+        std::fprintf(stderr, "splice-bench: %s\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "splice-bench: %s\n", error.what());
+        return 1;
+    }
+}

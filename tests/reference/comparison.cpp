@@ -1,0 +1,56 @@
+#include "tests/reference/comparison.h"
+
+#include "preprocess/mesh/read_mesh.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace splice::reference {
+
+IndexedMesh load_mesh(const std::filesystem::path& path) {
+    RepairReport report;
+    return repair_mesh(read_mesh_file(path), RepairOptions{}, report, path.string());
+}
+
+ReferenceView reference_view(const IndexedMesh& mesh, const Camera& camera, std::uint32_t width, std::uint32_t height) {
+    const Vec3d& offset = mesh.source_offset;
+    const glm::dmat4 to_source = glm::scale(
+        glm::translate(glm::dmat4(1), glm::dvec3(offset.x(), offset.y(), offset.z())), glm::dvec3(mesh.source_scale));
+    return {view_matrix(camera) * to_source, projection_matrix(camera, width, height), width, height};
+}
+
+Camera camera_from(const Box& bounds, const glm::dvec3& direction, std::uint32_t width, std::uint32_t height,
+                   bool orthographic) {
+    Framing framing;
+    framing.azimuth_degrees = glm::degrees(std::atan2(direction.x, direction.z));
+    framing.elevation_degrees = glm::degrees(std::asin(std::clamp(direction.y, -1.0, 1.0)));
+    framing.orthographic = orthographic;
+    return frame_camera(bounds, framing, width, height);
+}
+
+glm::vec3 background_light(const Background& background) {
+    const auto decode = [](double c) {
+        return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    };
+    return {decode(background.colour.r), decode(background.colour.g), decode(background.colour.b)};
+}
+
+ColourImage colours(const Frame& frame) {
+    ColourImage image(frame.width, frame.height);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = {frame.rgba[4 * i], frame.rgba[4 * i + 1], frame.rgba[4 * i + 2]};
+    return image;
+}
+
+DepthImage depths(const Frame& frame) {
+    DepthImage image(frame.width, frame.height, kNothing);
+    if (frame.depth.size() != image.pixels.size()) throw std::invalid_argument("the frame was rendered without depth");
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        if (frame.coverage[i]) image.pixels[i] = frame.depth[i];
+    return image;
+}
+
+}  // namespace splice::reference

@@ -14,7 +14,7 @@ struct BakeOptions {
     ClusterOptions cluster;
     SamplingOptions sampling;
     SimplifyOptions simplify;
-    int threads = 0;    // 0: one a core
+    int threads = 0;  // 0: one a core
 };
 
 struct BakeStats {
@@ -24,13 +24,14 @@ struct BakeStats {
     std::vector<std::string> warnings;
     std::uint64_t vertices = 0, triangles = 0;  // of the repaired mesh
     double seconds_read = 0, seconds_repair = 0, seconds_cluster = 0, seconds_simplify = 0, seconds_sample = 0,
-           seconds_prune = 0, seconds_total = 0;
+           seconds_prune = 0, seconds_assemble = 0, seconds_total = 0;
 };
 
 /// A mesh in memory -> Model. Throws InputError.
 Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats, const Progress& progress = {});
 
 /// A mesh file -> Model: read, repair, build. Throws InputError, SystemError.
-Model bake_file(const std::filesystem::path& path, const BakeOptions& options, BakeStats& stats, const Progress& progress = {});
+Model bake_file(const std::filesystem::path& path, const BakeOptions& options, BakeStats& stats,
+                const Progress& progress = {});
 
 }  // namespace splice

@@ -1,0 +1,293 @@
+#include "preprocess/build_model/assemble_model.h"
+
+#include "preprocess/build_model/normal_cone.h"
+#include "preprocess/build_model/patch_octree.h"
+#include "preprocess/build_model/texture_mips.h"
+#include "preprocess/model_format/octahedral.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace splice {
+namespace {
+
+constexpr std::uint32_t kUnset = 0xffffffffu;
+
+// What of a patch is computed from its triangles and disks.
+struct PatchExtent {
+    Box bounds;
+    NormalCone cone;
+};
+
+class Assembler {
+  public:
+    Assembler(const IndexedMesh& mesh, const PatchSet& patches, const RenderVertices& vertices, const PatchLods& lods,
+              const SurfelSet& surfels)
+        : mesh_(mesh), patches_(patches), vertices_(vertices), lods_(lods), surfels_(surfels) {}
+
+    Model assemble() {
+        measure_patches();
+        order_patches();
+        add_triangles();
+        add_patches();
+        add_surfels();
+        add_merge_tree();
+        add_materials();
+        add_info();
+        return std::move(model_);
+    }
+
+  private:
+    std::span<const PatchLods::Level> levels_of(std::uint32_t patch) const {
+        return std::span(lods_.levels)
+            .subspan(lods_.patch_begin[patch], lods_.patch_begin[patch + 1] - lods_.patch_begin[patch]);
+    }
+    std::span<const std::uint32_t> indices_of(const PatchLods::Level& level) const {
+        return std::span(lods_.indices).subspan(level.first_index, level.index_count);
+    }
+    std::span<const std::uint32_t> triangles_of(std::uint32_t patch) const {
+        return std::span(patches_.patch_triangles)
+            .subspan(patches_.patch_begin[patch], patches_.patch_begin[patch + 1] - patches_.patch_begin[patch]);
+    }
+    std::span<const SurfelSample> surfels_of(std::uint32_t patch) const {
+        return std::span(surfels_.surfels)
+            .subspan(surfels_.patch_begin[patch], surfels_.patch_begin[patch + 1] - surfels_.patch_begin[patch]);
+    }
+
+    void measure_patches();
+    PatchExtent measure_patch(std::uint32_t patch) const;
+    void order_patches();
+    void add_triangles();
+    void add_patches();
+    void add_surfels();
+    void add_merge_tree();
+    void add_materials();
+    void add_info();
+
+    const IndexedMesh& mesh_;
+    const PatchSet& patches_;
+    const RenderVertices& vertices_;
+    const PatchLods& lods_;
+    const SurfelSet& surfels_;
+
+    std::vector<PatchExtent> extents_;             // by old patch
+    std::vector<std::uint32_t> order_;             // new place -> old patch
+    std::vector<std::uint32_t> leaf_of_triangle_;  // IndexedMesh triangle -> triangle of kIndices
+    Model model_;
+};
+
+Vec3f position_of(const format::Vertex& vertex) {
+    return {vertex.position[0], vertex.position[1], vertex.position[2]};
+}
+
+Vec3f decoded_normal(std::uint32_t bits) {
+    const auto normal = decode_octahedral(bits);
+    return {normal[0], normal[1], normal[2]};
+}
+
+// The extent of a disk along an axis is r sqrt(1 - n^2); widened by its rounding.
+void add_disk(Box& box, const SurfelSample& surfel) {
+    const Vec3f squares = surfel.normal.cwiseProduct(surfel.normal);
+    const Vec3f reach = (Vec3f::Ones() - squares).cwiseMax(0.0f).cwiseSqrt() * surfel.radius + Vec3f::Constant(1e-6f);
+    box.add(surfel.position - reach);
+    box.add(surfel.position + reach);
+}
+
+// The cone must hold what decides whether something is seen from behind: the shading normals, and the geometric normals
+// of every level, by which triangles are culled.
+PatchExtent Assembler::measure_patch(std::uint32_t patch) const {
+    PatchExtent extent;
+    std::vector<Vec3f> normals;
+    for (const PatchLods::Level& level : levels_of(patch)) {
+        const auto indices = indices_of(level);
+        for (std::size_t i = 0; i < indices.size(); i += 3) {
+            const format::Vertex* corners[3];
+            for (std::size_t k = 0; k < 3; ++k) {
+                corners[k] = &vertices_.vertices[indices[i + k]];
+                extent.bounds.add(position_of(*corners[k]));
+                normals.push_back(decoded_normal(corners[k]->normal));
+            }
+            const Vec3d edge_a = (position_of(*corners[1]) - position_of(*corners[0])).cast<double>();
+            const Vec3d edge_b = (position_of(*corners[2]) - position_of(*corners[0])).cast<double>();
+            const Vec3d face_normal = edge_a.cross(edge_b);
+            if (face_normal.squaredNorm() > 0) normals.push_back(face_normal.normalized().cast<float>());
+        }
+    }
+    for (const SurfelSample& surfel : surfels_of(patch)) {
+        add_disk(extent.bounds, surfel);
+        normals.push_back(decoded_normal(encode_octahedral(surfel.normal.x(), surfel.normal.y(), surfel.normal.z())));
+    }
+    extent.cone = enclose_normals(normals);
+    return extent;
+}
+
+void Assembler::measure_patches() {
+    extents_.resize(patches_.patches.size());
+    tbb::parallel_for(std::size_t{0}, extents_.size(),
+                      [&](std::size_t patch) { extents_[patch] = measure_patch(static_cast<std::uint32_t>(patch)); });
+}
+
+void Assembler::order_patches() {
+    std::vector<Box> bounds;
+    bounds.reserve(extents_.size());
+    for (const PatchExtent& extent : extents_)
+        bounds.push_back(extent.bounds);
+    PatchOctree octree = build_patch_octree(bounds);
+    order_ = std::move(octree.order);
+    model_.octree = std::move(octree.nodes);
+}
+
+// Vertices are renumbered by first use, so that a patch's lie together.
+void Assembler::add_triangles() {
+    std::vector<std::uint32_t> new_vertex(vertices_.vertices.size(), kUnset);
+    model_.vertices.reserve(vertices_.vertices.size());
+    model_.indices.reserve(lods_.indices.size());
+    const auto append = [&](const PatchLods::Level& level) {
+        for (const std::uint32_t old_vertex : indices_of(level)) {
+            if (new_vertex[old_vertex] == kUnset) {
+                new_vertex[old_vertex] = static_cast<std::uint32_t>(model_.vertices.size());
+                model_.vertices.push_back(vertices_.vertices[old_vertex]);
+            }
+            model_.indices.push_back(new_vertex[old_vertex]);
+        }
+    };
+    model_.lods.resize(lods_.levels.size());
+    std::vector<std::uint32_t> first_lod;
+    std::uint32_t lod = 0;
+    leaf_of_triangle_.resize(mesh_.triangles.size());
+    std::uint32_t leaf = 0;
+    for (const std::uint32_t patch : order_) {
+        const auto levels = levels_of(patch);
+        first_lod.push_back(lod);
+        model_.lods[lod] = {model_.indices.size(), levels[0].index_count, 0.0f};
+        lod += static_cast<std::uint32_t>(levels.size());
+        append(levels[0]);
+        for (const std::uint32_t triangle : triangles_of(patch))
+            leaf_of_triangle_[triangle] = leaf++;
+    }
+    for (std::size_t place = 0; place < order_.size(); ++place) {
+        const auto levels = levels_of(order_[place]);
+        for (std::size_t level = 1; level < levels.size(); ++level) {
+            model_.lods[first_lod[place] + level] = {model_.indices.size(), levels[level].index_count,
+                                                     levels[level].error};
+            append(levels[level]);
+        }
+    }
+}
+
+void Assembler::add_patches() {
+    std::uint64_t first_surfel = 0;
+    std::uint32_t first_lod = 0;
+    for (const std::uint32_t old : order_) {
+        const ClusterPatch& cluster = patches_.patches[old];
+        const PatchExtent& extent = extents_[old];
+        format::Patch patch{};
+        for (int axis = 0; axis < 3; ++axis) {
+            patch.bounds_min[axis] = extent.bounds.min[axis];
+            patch.bounds_max[axis] = extent.bounds.max[axis];
+            patch.cone_axis[axis] = extent.cone.axis[axis];
+        }
+        patch.cone_cos = extent.cone.cosine;
+        patch.representation = cluster.representation;
+        patch.material = cluster.material;
+        patch.first_surfel = first_surfel;
+        patch.surfel_count = static_cast<std::uint32_t>(surfels_of(old).size());
+        patch.first_lod = first_lod;
+        patch.lod_count = static_cast<std::uint32_t>(levels_of(old).size());
+        patch.area = cluster.area;
+        for (const SurfelSample& surfel : surfels_of(old)) {
+            patch.max_surfel_radius = std::max(patch.max_surfel_radius, surfel.radius);
+            patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, surfel.epsilon);
+        }
+        patch.roughness = cluster.roughness;
+        const bool is_leaf = cluster.merge_root < leaf_of_triangle_.size();
+        patch.merge_root = is_leaf ? leaf_of_triangle_[cluster.merge_root] : cluster.merge_root;
+        model_.patches.push_back(patch);
+        first_surfel += patch.surfel_count;
+        first_lod += patch.lod_count;
+    }
+}
+
+void Assembler::add_surfels() {
+    model_.surfels.reserve(surfels_.surfels.size());
+    for (std::uint32_t place = 0; place < order_.size(); ++place) {
+        for (const SurfelSample& sample : surfels_of(order_[place])) {
+            const Vec3f& position = sample.position;
+            model_.surfels.push_back({{position.x(), position.y(), position.z()},
+                                      sample.radius,
+                                      encode_octahedral(sample.normal.x(), sample.normal.y(), sample.normal.z()),
+                                      sample.colour,
+                                      sample.epsilon,
+                                      place});
+        }
+    }
+}
+
+void Assembler::add_merge_tree() {
+    model_.merge_tree = patches_.merge_tree;
+    for (format::MergeNode& node : model_.merge_tree)
+        for (std::uint32_t& child : node.child)
+            if (child < leaf_of_triangle_.size()) child = leaf_of_triangle_[child];
+}
+
+// Images that no material uses are left out.
+void Assembler::add_materials() {
+    std::vector<std::uint32_t> texture_of_image(mesh_.images.size(), kUnset);
+    for (const MeshMaterial& material : mesh_.materials) {
+        format::Material stored{material.diffuse, format::kNoTexture};
+        if (material.image != kNoImage) {
+            std::uint32_t& texture = texture_of_image[material.image];
+            if (texture == kUnset) {
+                texture = static_cast<std::uint32_t>(model_.textures.size());
+                const Image& image = mesh_.images[material.image];
+                const std::vector<std::byte> chain = build_mip_chain(image);
+                const auto levels = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+                model_.textures.push_back({image.width, image.height, levels, 0, model_.texels.size(), chain.size()});
+                model_.texels.insert(model_.texels.end(), chain.begin(), chain.end());
+            }
+            stored.texture = texture;
+        }
+        model_.materials.push_back(stored);
+    }
+}
+
+void Assembler::add_info() {
+    format::ModelInfo& info = model_.info;
+    info.source_scale = mesh_.source_scale;
+    for (int axis = 0; axis < 3; ++axis) {
+        info.source_offset[axis] = mesh_.source_offset[axis];
+        info.bounds_min[axis] = model_.octree.front().bounds_min[axis];
+        info.bounds_max[axis] = model_.octree.front().bounds_max[axis];
+    }
+    if (!mesh_.closed || !mesh_.consistently_oriented) info.flags |= format::kTwoSided;
+    if (mesh_.has_colours) info.flags |= format::kHasColours;
+    if (!mesh_.corner_uvs.empty()) info.flags |= format::kHasUvs;
+    info.source_vertices = mesh_.positions.size();
+    info.source_triangles = mesh_.triangles.size();
+    for (const format::Patch& patch : model_.patches) {
+        info.lod_levels = std::max(info.lod_levels, patch.lod_count);
+        info.max_surfel_radius = std::max(info.max_surfel_radius, patch.max_surfel_radius);
+        if (patch.representation == format::Representation::kTriangles)
+            info.drawn_triangles += model_.lods[patch.first_lod].index_count / 3;
+    }
+    if (model_.surfels.empty()) return;
+    std::vector<float> radii;
+    radii.reserve(model_.surfels.size());
+    for (const format::Surfel& surfel : model_.surfels)
+        radii.push_back(surfel.radius);
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+    std::nth_element(radii.begin(), middle, radii.end());
+    info.median_surfel_radius = *middle;
+}
+
+}  // namespace
+
+Model assemble_model(const IndexedMesh& mesh, const PatchSet& patches, const RenderVertices& vertices,
+                     const PatchLods& lods, const SurfelSet& surfels) {
+    return Assembler(mesh, patches, vertices, lods, surfels).assemble();
+}
+
+}  // namespace splice

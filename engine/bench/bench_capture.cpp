@@ -2,7 +2,6 @@
 #include "engine/bench/bench_view.h"
 #include "engine/bench/table.h"
 #include "tests/reference/comparison.h"
-#include "tests/reference/lighting_twin.h"
 #include "tests/reference/png.h"
 
 #include <fmt/format.h>
@@ -16,18 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace splice::reference;
 using nlohmann::json;
-
-struct Quality {
-    double inside, whole, iou;
-};
-
-Quality compare(const Frame& frame, const ColourImage& truth, const Mask& coverage, const Mask& inside) {
-    const ColourImage image = colours(frame);
-    Mask shown(frame.width, frame.height);
-    std::transform(frame.coverage.begin(), frame.coverage.end(), shown.pixels.begin(),
-                   [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0); });
-    return {psnr(image, truth, &inside), psnr(image, truth), silhouette_iou(shown, coverage)};
-}
 
 struct Timing {
     double minimum, median;
@@ -104,30 +91,27 @@ json bench_capture(const std::vector<BenchModel>& models, const QualityOptions& 
             settings.want_overlap = true;
             const Frame hybrid_frame = renderer.render(hybrid_scene, settings);
             const Frame triangle_frame = renderer.render(triangle_scene, settings);
-            const ReferenceView reference = reference_view(mesh, view.camera, options.width, options.height);
-            const ColourImage truth =
-                oracle.shaded(reference, lighting_twin(hybrid_scene.lighting, mesh, view.camera, two_sided),
-                              background_light(hybrid_scene.background));
-            const Mask coverage = covered(oracle.depth(reference)), inside = eroded(coverage, 4);
-            const Quality h = compare(hybrid_frame, truth, coverage, inside);
-            const Quality t = compare(triangle_frame, truth, coverage, inside);
-            if (differences.empty() || h.inside - t.inside < *std::min_element(differences.begin(), differences.end()))
+            const Truth truth =
+                truth_of(oracle, mesh, hybrid_scene, view.camera, options.width, options.height, two_sided);
+            const Agreement h = compare(hybrid_frame, truth), t = compare(triangle_frame, truth);
+            if (differences.empty() ||
+                h.inside_db - t.inside_db < *std::min_element(differences.begin(), differences.end()))
                 worst_view = view.name;
-            hybrid_inside.push_back(h.inside);
-            triangles_inside.push_back(t.inside);
-            hybrid_whole.push_back(h.whole);
-            triangles_whole.push_back(t.whole);
-            differences.push_back(h.inside - t.inside);
+            hybrid_inside.push_back(h.inside_db);
+            triangles_inside.push_back(t.inside_db);
+            hybrid_whole.push_back(h.frame_db);
+            triangles_whole.push_back(t.frame_db);
+            differences.push_back(h.inside_db - t.inside_db);
             iou.push_back(h.iou);
             views.push_back({{"view", view.name},
-                             {"hybrid", {{"inside_db", h.inside}, {"frame_db", h.whole}, {"iou", h.iou}}},
-                             {"triangles", {{"inside_db", t.inside}, {"frame_db", t.whole}, {"iou", t.iou}}},
+                             {"hybrid", {{"inside_db", h.inside_db}, {"frame_db", h.frame_db}, {"iou", h.iou}}},
+                             {"triangles", {{"inside_db", t.inside_db}, {"frame_db", t.frame_db}, {"iou", t.iou}}},
                              {"surfels_drawn", hybrid_frame.stats.surfels_drawn},
                              {"triangles_drawn", hybrid_frame.stats.triangles_drawn},
                              {"overlap_mean", hybrid_frame.stats.overlap_mean}});
             if (!options.pictures.empty())
                 save_pictures(options.pictures, bench_model.name + "-" + view.name, colours(hybrid_frame),
-                              colours(triangle_frame), truth);
+                              colours(triangle_frame), truth.image);
         }
 
         show_progress("time " + bench_model.name);

@@ -3,7 +3,6 @@
 #include "engine/bench/table.h"
 #include "tests/reference/comparison.h"
 #include "tests/reference/png.h"
-#include "tests/reference/surfel_tolerance.h"
 
 #include <fmt/format.h>
 
@@ -59,15 +58,8 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
             settings.height = options.height;
             settings.camera = view.camera;
             settings.epsilon_scale = options.epsilon_scale;
-            settings.want_depth = true;
-            const DepthImage shown = depths(renderer.render(scene, settings));
-            const ReferenceView reference = reference_view(mesh, view.camera, options.width, options.height);
-            const DepthImage truth = oracle.depth(reference);
-            ColourImage marked;
-            const Tolerance tolerance =
-                surfel_tolerance(view_of(baked.model), reference, truth, static_cast<float>(options.epsilon_scale));
-            const SurfaceReport found = check_surface(shown, truth, tolerance, &marked);
-            const double iou = silhouette_iou(covered(shown), covered(truth));
+            const auto [found, iou, marked] =
+                check_frame(renderer, scene, view_of(baked.model), oracle, mesh, settings);
             add_counts(sum, found);
             lowest_iou = std::min(lowest_iou, iou);
             json entry = to_json(found, iou);

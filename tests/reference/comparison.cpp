@@ -1,6 +1,8 @@
 #include "tests/reference/comparison.h"
 
 #include "preprocess/mesh/read_mesh.h"
+#include "tests/reference/lighting_twin.h"
+#include "tests/reference/surfel_tolerance.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -9,6 +11,34 @@
 #include <stdexcept>
 
 namespace splice::reference {
+
+namespace {
+
+/// Linear light of the scene's background.
+glm::vec3 background_light(const Background& background) {
+    const auto decode = [](double c) {
+        return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    };
+    return {decode(background.colour.r), decode(background.colour.g), decode(background.colour.b)};
+}
+
+Mask coverage_of(const Frame& frame) {
+    Mask mask(frame.width, frame.height);
+    std::transform(frame.coverage.begin(), frame.coverage.end(), mask.pixels.begin(),
+                   [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0); });
+    return mask;
+}
+
+/// Distances along the view direction in world units; kNothing where the frame covers nothing.
+DepthImage depths(const Frame& frame) {
+    DepthImage image(frame.width, frame.height, kNothing);
+    if (frame.depth.size() != image.pixels.size()) throw std::invalid_argument("the frame was rendered without depth");
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        if (frame.coverage[i]) image.pixels[i] = frame.depth[i];
+    return image;
+}
+
+}  // namespace
 
 IndexedMesh load_mesh(const std::filesystem::path& path) {
     RepairReport report;
@@ -31,13 +61,6 @@ Camera camera_from(const Box& bounds, const glm::dvec3& direction, std::uint32_t
     return frame_camera(bounds, framing, width, height);
 }
 
-glm::vec3 background_light(const Background& background) {
-    const auto decode = [](double c) {
-        return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-    };
-    return {decode(background.colour.r), decode(background.colour.g), decode(background.colour.b)};
-}
-
 ColourImage colours(const Frame& frame) {
     ColourImage image(frame.width, frame.height);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -45,12 +68,34 @@ ColourImage colours(const Frame& frame) {
     return image;
 }
 
-DepthImage depths(const Frame& frame) {
-    DepthImage image(frame.width, frame.height, kNothing);
-    if (frame.depth.size() != image.pixels.size()) throw std::invalid_argument("the frame was rendered without depth");
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        if (frame.coverage[i]) image.pixels[i] = frame.depth[i];
-    return image;
+Truth truth_of(const ReferenceScene& oracle, const IndexedMesh& mesh, const Scene& scene, const Camera& camera,
+               std::uint32_t width, std::uint32_t height, bool two_sided) {
+    const ReferenceView view = reference_view(mesh, camera, width, height);
+    Truth truth;
+    truth.image =
+        oracle.shaded(view, lighting_twin(scene.lighting, mesh, camera, two_sided), background_light(scene.background));
+    truth.coverage = covered(oracle.depth(view));
+    truth.inside = eroded(truth.coverage, 4);
+    return truth;
+}
+
+Agreement compare(const Frame& frame, const Truth& truth) {
+    const ColourImage image = colours(frame);
+    return {psnr(image, truth.image, &truth.inside), psnr(image, truth.image),
+            silhouette_iou(coverage_of(frame), truth.coverage)};
+}
+
+SurfaceCheck check_frame(Renderer& renderer, const Scene& scene, const ModelView& model, const ReferenceScene& oracle,
+                         const IndexedMesh& mesh, CaptureSettings settings) {
+    settings.want_depth = true;
+    const DepthImage shown = depths(renderer.render(scene, settings));
+    const ReferenceView view = reference_view(mesh, settings.camera, settings.width, settings.height);
+    const DepthImage truth = oracle.depth(view);
+    const Tolerance tolerance = surfel_tolerance(model, view, truth, static_cast<float>(settings.epsilon_scale));
+    SurfaceCheck check;
+    check.report = check_surface(shown, truth, tolerance, &check.marked);
+    check.iou = silhouette_iou(covered(shown), covered(truth));
+    return check;
 }
 
 }  // namespace splice::reference

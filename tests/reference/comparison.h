@@ -20,12 +20,30 @@ ReferenceView reference_view(const IndexedMesh& mesh, const Camera& camera, std:
 Camera camera_from(const Box& bounds, const glm::dvec3& direction, std::uint32_t width, std::uint32_t height,
                    bool orthographic = false);
 
-/// Linear light of the scene's background.
-glm::vec3 background_light(const Background& background);
+/// What the frame of `scene`, which shows `mesh` alone, should look like.
+struct Truth {
+    ColourImage image;  // 64 samples a pixel, the scene's lights and background
+    Mask coverage;      // of the pixel centres
+    Mask inside;        // 4 px inside the coverage
+};
+Truth truth_of(const ReferenceScene& oracle, const IndexedMesh& mesh, const Scene& scene, const Camera& camera,
+               std::uint32_t width, std::uint32_t height, bool two_sided);
+
+/// Agreement of a frame with the truth; dB as psnr() gives them.
+struct Agreement {
+    double inside_db, frame_db, iou;
+};
+Agreement compare(const Frame& frame, const Truth& truth);
+
+/// Renders `scene`, which shows `model` alone, baked from `mesh`, and holds the frame's surface against the oracle's.
+struct SurfaceCheck {
+    SurfaceReport report;
+    double iou;
+    ColourImage marked;  // see check_surface
+};
+SurfaceCheck check_frame(Renderer& renderer, const Scene& scene, const ModelView& model, const ReferenceScene& oracle,
+                         const IndexedMesh& mesh, CaptureSettings settings);
 
 ColourImage colours(const Frame& frame);
-
-/// Distances along the view direction in world units; kNothing where the frame covers nothing. Needs want_depth.
-DepthImage depths(const Frame& frame);
 
 }  // namespace splice::reference

@@ -174,12 +174,15 @@ ColourImage ReferenceScene::shaded(const ReferenceView& view, const Shader& shad
     ColourImage image(view.width, view.height);
     const glm::dmat4 to_mesh = glm::inverse(view.view);
     const auto stratum = 1.0 / samples_per_side;
+    const auto jitter = [&](std::uint32_t x, std::uint32_t y, std::uint32_t dimension) {
+        return samples_per_side == 1 ? 0.5 : hash_to_unit(x, y, dimension);
+    };
     for_each_row(view.height, [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < view.width; ++x) {
             glm::dvec3 sum(0);
             for (std::uint32_t s = 0; s < samples_per_side * samples_per_side; ++s) {
-                const double dx = (s % samples_per_side + hash_to_unit(x, y, 2 * s)) * stratum;
-                const double dy = (s / samples_per_side + hash_to_unit(x, y, 2 * s + 1)) * stratum;
+                const double dx = (s % samples_per_side + jitter(x, y, 2 * s)) * stratum;
+                const double dy = (s / samples_per_side + jitter(x, y, 2 * s + 1)) * stratum;
                 const Ray eye = pixel_ray(view, x + dx, y + dy);
                 const Ray ray{glm::dvec3(to_mesh * glm::dvec4(eye.origin, 1)),
                               glm::dvec3(to_mesh * glm::dvec4(eye.direction, 0))};

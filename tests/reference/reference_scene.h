@@ -54,7 +54,7 @@ class ReferenceScene {
     DepthImage depth(const ReferenceView& view) const;
 
     /// `samples_per_side`^2 stratified samples a pixel, averaged in linear light over `background` (linear), then
-    /// sRGB-encoded.
+    /// sRGB-encoded. A single sample is taken at the pixel's centre.
     ColourImage shaded(const ReferenceView& view, const Shader& shader, const glm::vec3& background,
                        std::uint32_t samples_per_side = 8) const;
 

@@ -1,1 +1,45 @@
-// filled by its owner
+#include "preprocess/mesh/read_mesh.h"
+
+#include "preprocess/mesh/file_bytes.h"
+#include "preprocess/mesh/mesh_formats.h"
+#include "preprocess/mesh/sniff_format.h"
+#include "preprocess/model_format/error.h"
+
+namespace splice {
+
+SourceMesh read_mesh_file(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::string bytes = read_file_bytes(path);
+    if (is_gzip(bytes)) bytes = gunzip(bytes, name);
+
+    std::filesystem::path bare = path.filename();
+    if (bare.extension() == ".gz") bare.replace_extension();
+    const CompanionFiles companions(path.parent_path());
+    SourceMesh mesh;
+    switch (sniff_format(bytes, bare.extension().string(), name)) {
+        case MeshFormat::kObj:
+            mesh = parse_obj(bytes, name, companions);
+            break;
+        case MeshFormat::kPly:
+            mesh = parse_ply(bytes, name, companions);
+            break;
+        case MeshFormat::kStl:
+            mesh = parse_stl(bytes, name);
+            break;
+        case MeshFormat::kOff:
+            mesh = parse_off(bytes, name);
+            break;
+        case MeshFormat::kSmf:
+            mesh = parse_smf(bytes, name, companions);
+            break;
+    }
+    if (mesh.polygon_begin.size() == 1) {
+        throw InputError(name, "",
+                         mesh.positions.empty() ? "no faces and no vertices, expected a mesh"
+                                                : "no faces, only " + std::to_string(mesh.positions.size()) +
+                                                      " points; expected a mesh with faces");
+    }
+    return mesh;
+}
+
+}  // namespace splice

@@ -1,0 +1,38 @@
+// Files that a mesh refers to by name: material libraries and textures. A mesh from a stranger must not make the
+// program open what lies elsewhere, so only regular files inside the mesh's own folder are read.
+#pragma once
+
+#include "preprocess/mesh/indexed_mesh.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace splice {
+
+class CompanionFiles {
+  public:
+    /// Finds nothing; for meshes that have no folder.
+    CompanionFiles() = default;
+    explicit CompanionFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// True if `name` is a readable file inside the folder; says nothing otherwise.
+    bool contains(const std::string& name) const;
+
+    /// The file's bytes. When there is no such file or it lies outside the folder: nothing, and a line in `warnings`.
+    std::optional<std::string> read(const std::string& name, std::vector<std::string>& warnings) const;
+
+    /// An image in PNG, JPEG, BMP, TGA or PPM; nothing and a warning when it is absent or unreadable.
+    std::optional<Image> read_image(const std::string& name, std::vector<std::string>& warnings) const;
+
+  private:
+    std::optional<std::filesystem::path> find(const std::string& name, std::string& problem) const;
+    std::optional<std::filesystem::path> folder_;
+};
+
+/// Decodes PNG, JPEG, BMP, TGA or PPM. On failure: nothing, and the reason in `problem`.
+std::optional<Image> decode_image(std::string_view bytes, std::string& problem);
+
+}  // namespace splice

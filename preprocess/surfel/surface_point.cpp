@@ -1,0 +1,66 @@
+// Closest point on a triangle after Ericson 2005, Real-Time Collision Detection, 5.1.5.
+#include "preprocess/surfel/surface_point.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace splice {
+
+Vec3f barycentric(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point) {
+    const auto& v = mesh.triangles[triangle];
+    const Vec3f a = mesh.positions[v[0]], b = mesh.positions[v[1]], c = mesh.positions[v[2]];
+    const Vec3f ab = b - a, ac = c - a, ap = point - a;
+    const float d1 = ab.dot(ap), d2 = ac.dot(ap);
+    if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+    const Vec3f bp = point - b;
+    const float d3 = ab.dot(bp), d4 = ac.dot(bp);
+    if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        const float s = d1 > d3 ? d1 / (d1 - d3) : 0;
+        return {1 - s, s, 0};
+    }
+    const Vec3f cp = point - c;
+    const float d5 = ab.dot(cp), d6 = ac.dot(cp);
+    if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        const float s = d2 > d6 ? d2 / (d2 - d6) : 0;
+        return {1 - s, 0, s};
+    }
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const float length = (d4 - d3) + (d5 - d6);
+        const float s = length > 0 ? (d4 - d3) / length : 0;
+        return {0, 1 - s, s};
+    }
+    const float sum = va + vb + vc;
+    if (!(sum > 0)) return Vec3f::Constant(1.0f / 3);
+    const float s = vb / sum, t = vc / sum;
+    return {1 - s - t, s, t};
+}
+
+Vec3f closest_point(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point) {
+    const Vec3f b = barycentric(mesh, triangle, point);
+    const auto& v = mesh.triangles[triangle];
+    return b[0] * mesh.positions[v[0]] + b[1] * mesh.positions[v[1]] + b[2] * mesh.positions[v[2]];
+}
+
+Vec3f surfel_normal(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric,
+                    const Vec3f& face_normal) {
+    constexpr float kLeastCosine = 0.70710678f;
+    const Vec3f* n = &mesh.corner_normals[3 * std::size_t{triangle}];
+    const Vec3f sum = barycentric[0] * n[0] + barycentric[1] * n[1] + barycentric[2] * n[2];
+    const float length = sum.norm();
+    if (!(length > 1e-6f)) return face_normal;
+    const Vec3f smooth = sum / length;
+    const float cosine = smooth.dot(face_normal);
+    if (cosine >= kLeastCosine) return smooth;
+    const Vec3f sideways = smooth - cosine * face_normal;
+    const float sine = sideways.norm();
+    if (!(sine > 1e-6f)) return face_normal;
+    return (kLeastCosine * face_normal + std::sqrt(1 - kLeastCosine * kLeastCosine) / sine * sideways).normalized();
+}
+
+}  // namespace splice

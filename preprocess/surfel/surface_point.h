@@ -1,0 +1,22 @@
+// Interpolation of what a triangle's corners carry, and the normal a surfel may have.
+#pragma once
+
+#include "preprocess/mesh/indexed_mesh.h"
+
+#include <cstdint>
+
+namespace splice {
+
+/// Barycentric coordinates of the triangle's point nearest to `point` in its plane, clamped into the triangle; the
+/// third of each corner when the triangle has no area.
+Vec3f barycentric(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point);
+
+/// The triangle's point nearest to `point`.
+Vec3f closest_point(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point);
+
+/// Interpolated corner normals, bent towards `face_normal` until they agree to within 45 degrees: a disk that leans
+/// more would not represent the surface it stands for. Unit.
+Vec3f surfel_normal(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric,
+                    const Vec3f& face_normal);
+
+}  // namespace splice

@@ -69,7 +69,8 @@ class Device {
     /// D32_SFLOAT_S8_UINT, else D24_UNORM_S8_UINT: one of them is mandatory.
     VkFormat depth_stencil_format() const;
 
-    /// Records commands, submits them and waits until they are done. Throws DeviceError (a lost device included).
+    /// Records commands, submits them and waits until they are done. Never from within `record`. What `record` throws
+    /// is passed on and nothing is submitted. Throws DeviceError (a lost device included).
     void submit_and_wait(const std::function<void(VkCommandBuffer)>& record);
     void wait_idle();
 

@@ -15,7 +15,8 @@
 namespace splice::gpu {
 
 /// Writes through the mapping where there is one, else through staging pieces of at most 32 MiB. Afterwards every later
-/// command sees the bytes. Throws DeviceError when the range lies outside the buffer.
+/// command sees the bytes. No submitted work may still use the range. Throws DeviceError when the range lies outside
+/// the buffer.
 void upload(Device& device, const Buffer& buffer, std::span<const std::byte> bytes, uint64_t offset = 0);
 
 /// A device buffer holding `bytes`.

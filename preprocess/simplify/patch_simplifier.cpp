@@ -304,7 +304,7 @@ void PatchSimplifier::collapse(Index vertex, Index target) {
         drop_dead_corners(touched);
 
     quadric_[target] += quadric_[vertex];
-    const Quadric& merged = quadric_[target];
+    const PlaneQuadric& merged = quadric_[target];
     if (merged.weight() > 0) error_ = std::max(error_, std::sqrt(merged.value(position_[target]) / merged.weight()));
 
     ring_.clear();

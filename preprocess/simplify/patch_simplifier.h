@@ -6,7 +6,7 @@
 // levels could still crack. Here border vertices are locked outright, which needs no penalty plane and is exact.
 #pragma once
 
-#include "preprocess/simplify/quadric.h"
+#include "preprocess/simplify/plane_quadric.h"
 #include "preprocess/simplify/simplify_patches.h"
 
 #include <span>
@@ -84,7 +84,7 @@ class PatchSimplifier {
     std::vector<Vec3d> position_, normal_;
     std::vector<Index> mesh_position_, first_corner_, degree_, version_, mark_;
     std::vector<std::uint8_t> locked_;
-    std::vector<Quadric> quadric_;
+    std::vector<PlaneQuadric> quadric_;
 
     std::vector<Candidate> heap_;
     std::vector<Target> targets_;

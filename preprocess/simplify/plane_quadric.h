@@ -8,7 +8,7 @@
 namespace splice {
 
 /// Sum over planes of area * (n.v + d)^2, and the sum of the areas: value(v) / weight is a mean squared distance.
-class Quadric {
+class PlaneQuadric {
   public:
     void add_plane(const Vec3d& unit_normal, const Vec3d& point, double area) {
         const double d = -unit_normal.dot(point);
@@ -24,7 +24,7 @@ class Quadric {
         weight_ += area;
     }
 
-    Quadric& operator+=(const Quadric& other) {
+    PlaneQuadric& operator+=(const PlaneQuadric& other) {
         xx_ += other.xx_;
         xy_ += other.xy_;
         xz_ += other.xz_;

@@ -1,0 +1,213 @@
+#include "preprocess/build_model/bake_command_line.h"
+
+#include "preprocess/build_model/program_main.h"
+#include "preprocess/model_format/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace splice {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<double> parse_number(const std::string& text) {
+    double value = 0;
+    const char* begin = text.c_str() + (text.starts_with('+') ? 1 : 0);
+    const char* end = text.c_str() + text.size();
+    const auto [rest, error] = std::from_chars(begin, end, value);
+    if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+std::string printed(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+// CLI::Range lets NaN through.
+CLI::Validator number_between(double least, double most) {
+    const auto check = [least, most](std::string& text) -> std::string {
+        const std::optional<double> value = parse_number(text);
+        if (value && *value >= least && *value <= most) return {};
+        return "'" + text + "' is not a number from " + printed(least) + " to " + printed(most);
+    };
+    return {check, "", "number"};
+}
+
+CLI::Validator any_number() {
+    const auto check = [](std::string& text) -> std::string {
+        return parse_number(text) ? std::string() : "'" + text + "' is not a finite number";
+    };
+    return {check, "", "number"};
+}
+
+template <typename Enum>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& value, const std::map<std::string, Enum>& choices,
+                        const std::string& help) {
+    const auto assign = [&value, &choices, name](const std::string& text) {
+        const auto found = choices.find(text);
+        if (found == choices.end()) {
+            std::string known;
+            for (const auto& [choice, ignored] : choices)
+                known += (known.empty() ? "" : "|") + choice;
+            throw CLI::ValidationError(name, "'" + text + "' is none of " + known);
+        }
+        value = found->second;
+    };
+    return app.add_option_function<std::string>(name, assign, help);
+}
+
+// bunny.ply.gz -> bunny.splice, in the current folder.
+fs::path default_output(const fs::path& input) {
+    fs::path name = input.filename();
+    if (name.extension() == ".gz") name.replace_extension();
+    return name.replace_extension(".splice");
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
+    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+void check_consistency(const BakeCommand& command) {
+    if (same_file(command.input, command.output))
+        throw UsageError("the output would overwrite the input " + command.input.string());
+    if (command.stats && (same_file(*command.stats, command.input) || same_file(*command.stats, command.output)))
+        throw UsageError("--stats would overwrite " + command.stats->string());
+    const SamplingOptions& sampling = command.options.sampling;
+    if (sampling.h_min > sampling.h_max)
+        throw UsageError("--h-min " + printed(sampling.h_min) + " is larger than --h-max " + printed(sampling.h_max));
+    const ClusterOptions& cluster = command.options.cluster;
+    if (cluster.triangle_share && cluster.representation != ForcedRepresentation::kHybrid)
+        throw UsageError("--triangle-share needs --representation hybrid");
+}
+
+constexpr const char* kFooter = R"(Examples:
+  splice-bake bunny.obj                          writes bunny.splice
+  splice-bake scan.ply.gz -o scan.splice --stats scan.json
+  splice-bake part.stl --representation triangles
+  splice-bake cow.smf --selection thesis --sampling 4     as published
+
+Lengths are shares of the longest side of the model's bounding box, areas shares of the surface's area.
+Exit code: 0 done, 1 input or system failed, 2 wrong usage. A failed or killed bake leaves no output behind.)";
+
+}  // namespace
+
+std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv) {
+    static const std::map<std::string, Selection> selections = {{"geometric", Selection::kGeometric},
+                                                                {"thesis", Selection::kThesis}};
+    static const std::map<std::string, ForcedRepresentation> representations = {
+        {"hybrid", ForcedRepresentation::kHybrid},
+        {"triangles", ForcedRepresentation::kTriangles},
+        {"surfels", ForcedRepresentation::kSurfels}};
+    BakeCommand command;
+    BakeOptions& options = command.options;
+    std::string sampling = "adaptive";
+    bool no_prune = false;
+    std::string output, stats;
+
+    CLI::App app{
+        "Bakes a mesh into a hybrid model: triangle patches where the surface is flat, surfels where it varies.",
+        "splice-bake"};
+    app.footer(kFooter);
+    app.add_option("INPUT", command.input, "Mesh: OBJ, PLY, STL, OFF or SMF, also gzipped (.gz)")->required();
+    app.add_option("-o,--output", output,
+                   "Model file to write; default: INPUT's name with .splice, in the current folder")
+        ->type_name("MODEL.splice");
+    app.set_version_flag("--version", "splice-bake " SPLICE_VERSION);
+
+    const std::string choice = "Which part becomes surfels";
+    add_choice(app, "--representation", options.cluster.representation, representations,
+               "hybrid (default), or all of it as triangles or surfels")
+        ->type_name("hybrid|triangles|surfels")
+        ->group(choice);
+    add_choice(app, "--selection", options.cluster.selection, selections,
+               "geometric (default): by how rough a patch is; thesis: the published two-phase cost")
+        ->type_name("geometric|thesis")
+        ->group(choice);
+    app.add_option("--triangle-share", options.cluster.triangle_share,
+                   "Share of the input's triangles to keep as triangles, 0..1; default: as the selection finds")
+        ->check(number_between(0, 1))
+        ->type_name("SHARE")
+        ->group(choice);
+    app.add_option("--phase1-cost", options.cluster.phase1_cost,
+                   "Clusters merge in phase one while the cost (no unit) is at most this; larger merges more")
+        ->check(any_number())
+        ->type_name("COST")
+        ->group(choice);
+    app.add_option("--phase2-cost", options.cluster.phase2_cost,
+                   "The same for phase two, which makes the surfel patches")
+        ->check(any_number())
+        ->type_name("COST")
+        ->group(choice);
+    app.add_option("--max-patch-area", options.cluster.max_patch_area,
+                   "Largest patch, share of the surface's area, 1e-9..1")
+        ->check(number_between(1e-9, 1))
+        ->type_name("SHARE")
+        ->group(choice);
+
+    const std::string surfels = "Surfels";
+    app.add_option("--sampling", sampling,
+                   "adaptive (default): spacing follows curvature and colour detail; a number C, 0.1..64: the thesis's "
+                   "spacing, a patch's mean edge length / C")
+        ->type_name("adaptive|C")
+        ->group(surfels);
+    app.add_option(
+           "--h-min", options.sampling.h_min,
+           "Least spacing, share of the model's longest side, 1e-5..1; default " + printed(options.sampling.h_min))
+        ->check(number_between(1e-5, 1))
+        ->type_name("LENGTH")
+        ->group(surfels);
+    app.add_option(
+           "--h-max", options.sampling.h_max,
+           "Largest spacing, share of the model's longest side, 1e-5..1; default " + printed(options.sampling.h_max))
+        ->check(number_between(1e-5, 1))
+        ->type_name("LENGTH")
+        ->group(surfels);
+    app.add_flag("--no-prune", no_prune, "Keep surfels that others cover")->group(surfels);
+
+    const std::string other = "Other";
+    app.add_option("--crease-angle", options.repair.crease_angle_degrees,
+                   "Missing normals are split where faces meet at more than this, degrees, 0..180; default 45")
+        ->check(number_between(0, 180))
+        ->type_name("DEGREES")
+        ->group(other);
+    app.add_option("--lod-levels", options.simplify.levels,
+                   "Triangle levels of detail a patch, the finest included, 1..16; default " +
+                       std::to_string(options.simplify.levels))
+        ->check(CLI::Range(1, 16))
+        ->type_name("COUNT")
+        ->group(other);
+    app.add_option("--threads", options.threads,
+                   "Threads, 0..1024; 0 (default): one a core. The output does not depend on it")
+        ->check(CLI::Range(0, 1024))
+        ->type_name("COUNT")
+        ->group(other);
+    app.add_option("--stats", stats, "Write counts, times (seconds) and peak memory (bytes) as JSON")
+        ->type_name("FILE")
+        ->group(other);
+    app.add_flag("--quiet", command.quiet, "Print errors only")->group(other);
+
+    if (!parse_command_line(app, argc, argv)) return std::nullopt;
+
+    command.output = output.empty() ? default_output(command.input) : fs::path(output);
+    if (app.count("--stats") != 0) command.stats = stats;
+    options.sampling.prune = !no_prune;
+    if (sampling != "adaptive") {
+        options.sampling.thesis_c = parse_number(sampling);
+        if (!options.sampling.thesis_c || *options.sampling.thesis_c < 0.1 || *options.sampling.thesis_c > 64)
+            throw UsageError("--sampling: '" + sampling +
+                             "' is neither adaptive nor a number from 0.1 to 64 (see --help)");
+    }
+    check_consistency(command);
+    return command;
+}
+
+}  // namespace splice

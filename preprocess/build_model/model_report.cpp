@@ -1,0 +1,117 @@
+#include "preprocess/build_model/model_report.h"
+
+#include "preprocess/model_format/section_layout.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <vector>
+
+namespace splice {
+namespace {
+
+struct LevelTotal {
+    std::uint64_t patches = 0, triangles = 0;
+    float max_error = 0;
+};
+
+// What the tables add up to.
+struct Totals {
+    std::uint64_t triangle_patches = 0, surfel_patches = 0;
+    double triangle_area = 0, surfel_area = 0;  // unit-box units^2
+    std::vector<LevelTotal> levels;             // finest first
+
+    explicit Totals(const ModelView& view) : levels(view.info->lod_levels) {
+        for (const format::Patch& patch : view.patches) {
+            const bool triangles = patch.representation == format::Representation::kTriangles;
+            ++(triangles ? triangle_patches : surfel_patches);
+            (triangles ? triangle_area : surfel_area) += static_cast<double>(patch.area);
+            for (std::uint32_t i = 0; i < patch.lod_count; ++i) {
+                const format::Lod& lod = view.lods[patch.first_lod + i];
+                ++levels[i].patches;
+                levels[i].triangles += lod.index_count / 3;
+                levels[i].max_error = std::max(levels[i].max_error, lod.error);
+            }
+        }
+    }
+};
+
+}  // namespace
+
+std::string model_report_json(const ModelFile& file, const std::string& name) {
+    const ModelView& view = file.view();
+    const format::ModelInfo& info = *view.info;
+    const Totals totals(view);
+    nlohmann::ordered_json json;
+    json["file"] = name;
+    json["version"] = format::kVersion;
+    json["file_bytes"] = file.bytes().size();
+    json["source"] = {{"vertices", info.source_vertices},
+                      {"triangles", info.source_triangles},
+                      {"scale", info.source_scale},
+                      {"offset", info.source_offset}};
+    json["bounds"] = {{"min", info.bounds_min}, {"max", info.bounds_max}};
+    json["two_sided"] = (info.flags & format::kTwoSided) != 0;
+    json["has_colours"] = (info.flags & format::kHasColours) != 0;
+    json["has_uvs"] = (info.flags & format::kHasUvs) != 0;
+    json["drawn"] = {{"triangles", info.drawn_triangles}, {"surfels", view.surfels.size()}};
+    json["patches"] = {{"triangle", totals.triangle_patches},
+                       {"surfel", totals.surfel_patches},
+                       {"triangle_area", totals.triangle_area},
+                       {"surfel_area", totals.surfel_area}};
+    json["surfel_radius"] = {{"median", info.median_surfel_radius}, {"max", info.max_surfel_radius}};
+    json["levels"] = nlohmann::ordered_json::array();
+    for (const LevelTotal& level : totals.levels)
+        json["levels"].push_back(
+            {{"patches", level.patches}, {"triangles", level.triangles}, {"max_error", level.max_error}});
+    json["textures"] = nlohmann::ordered_json::array();
+    for (const format::Texture& texture : view.textures)
+        json["textures"].push_back(
+            {{"width", texture.width}, {"height", texture.height}, {"mip_levels", texture.mip_levels}});
+    json["sections"] = nlohmann::ordered_json::array();
+    format::for_each_section(view,
+                             [&]<typename T>(format::SectionKind, const char* title, std::span<const T> elements) {
+                                 json["sections"].push_back({{"name", title},
+                                                             {"count", elements.size()},
+                                                             {"element_bytes", sizeof(T)},
+                                                             {"bytes", elements.size_bytes()}});
+                             });
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string model_report_text(const ModelFile& file, const std::string& name) {
+    const ModelView& view = file.view();
+    const format::ModelInfo& info = *view.info;
+    const Totals totals(view);
+    std::ostringstream text;
+    text << name << ": model of format version " << format::kVersion << ", " << file.bytes().size()
+         << " bytes, intact\n";
+    text << "source      " << info.source_triangles << " triangles, " << info.source_vertices
+         << " vertices, longest side " << info.source_scale << '\n';
+    text << "surface     "
+         << ((info.flags & format::kTwoSided) != 0 ? "open, drawn from both sides" : "closed, drawn from outside")
+         << ((info.flags & format::kHasColours) != 0 ? ", vertex colours" : "")
+         << ((info.flags & format::kHasUvs) != 0 ? ", texture coordinates" : "") << '\n';
+    text << "drawn       " << info.drawn_triangles << " triangles in " << totals.triangle_patches << " patches, "
+         << view.surfels.size() << " surfels in " << totals.surfel_patches << " patches\n";
+    if (!view.surfels.empty())
+        text << "radius      median " << info.median_surfel_radius << ", largest " << info.max_surfel_radius
+             << " of the longest side\n";
+    for (std::size_t i = 0; i < totals.levels.size(); ++i)
+        text << "level " << std::left << std::setw(6) << i << totals.levels[i].triangles << " triangles in "
+             << totals.levels[i].patches << " patches, error at most " << totals.levels[i].max_error << '\n';
+    for (const format::Texture& texture : view.textures)
+        text << "texture     " << texture.width << " x " << texture.height << ", " << texture.mip_levels
+             << " mip levels\n";
+    text << "\nsection           elements  bytes each        bytes\n";
+    format::for_each_section(
+        view, [&]<typename T>(format::SectionKind, const char* title, std::span<const T> elements) {
+            text << std::left << std::setw(16) << title << std::right << std::setw(10) << elements.size()
+                 << std::setw(12) << sizeof(T) << std::setw(13) << elements.size_bytes() << '\n';
+        });
+    return text.str();
+}
+
+}  // namespace splice

@@ -1,0 +1,60 @@
+#include "preprocess/build_model/program_main.h"
+
+#include "preprocess/model_format/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <iostream>
+#include <new>
+
+namespace splice {
+namespace {
+
+// File names and messages of other libraries may hold line ends and control characters.
+std::string one_line(std::string text) {
+    std::ranges::replace_if(
+        text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    while (!text.empty() && text.back() == ' ')
+        text.pop_back();
+    return text;
+}
+
+int report(const std::string& program, const std::string& message, int exit_code) {
+    std::cerr << one_line(program + ": " + message) << std::endl;
+    return exit_code;
+}
+
+}  // namespace
+
+int run_program(const std::string& program, const std::function<int()>& body) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    try {
+        return body();
+    } catch (const UsageError& error) {
+        return report(program, error.what(), kExitUsage);
+    } catch (const Error& error) {
+        return report(program, error.what(), kExitFailure);
+    } catch (const std::bad_alloc&) {
+        return report(program, "out of memory", kExitFailure);
+    } catch (const std::exception& error) {
+        return report(program, std::string("internal error: ") + error.what(), kExitFailure);
+    }
+}
+
+bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+    try {
+        app.parse(argc, argv);
+        return true;
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+    } catch (const CLI::CallForVersion&) {
+        std::cout << app.version() << '\n';
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(std::string(error.what()) + " (see --help)");
+    }
+    return false;
+}
+
+}  // namespace splice

@@ -9,6 +9,7 @@
 #include "preprocess/simplify/plane_quadric.h"
 #include "preprocess/simplify/simplify_patches.h"
 
+#include <Eigen/Geometry>
 #include <span>
 #include <vector>
 

@@ -8,9 +8,10 @@
 //   Frame frame = renderer.render(scene_of(model), settings);
 #pragma once
 
-#include "engine/passes/view.h"
 #include "engine/scene/camera.h"
+#include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/view.h"
 #include "preprocess/model_format/model.h"
 
 #include <cstdint>
@@ -25,19 +26,18 @@ struct RendererOptions {
     bool validate = false;        // validation and synchronisation-validation layers
 };
 
-enum class Sides { kAsBaked, kOneSided, kTwoSided };
-
 struct CaptureSettings {
     std::uint32_t width = 512, height = 512;  // pixels
     Camera camera;                            // clip planes are set from the scene's bounds when clip_to_scene
     bool clip_to_scene = true;
     View view = View::kShaded;
     Sides sides = Sides::kAsBaked;
-    double epsilon_scale = 1;   // thesis 4.3.1 uses 0.75..1.5; times each surfel's own epsilon
-    bool prefilter = true;      // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
-    bool want_depth = false;    // fill Frame::depth
-    bool want_overlap = false;  // fill FrameStats::overlap_mean
-    bool force_quads = false;   // draw every surfel as an oriented quad, none as a point sprite
+    double epsilon_scale = 1;                         // thesis 4.3.1 uses 0.75..1.5; times each surfel's own epsilon
+    bool prefilter = true;                            // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
+    bool want_depth = false;                          // fill Frame::depth
+    bool want_overlap = false;                        // fill FrameStats::overlap_mean
+    bool draw_triangles = true, draw_surfels = true;  // which patches take part
+    bool force_quads = false;                         // draw every surfel as an oriented quad, none as a point sprite
 };
 
 struct PassTime {

@@ -15,10 +15,11 @@ layout(location = 5) in uint in_patch;
 
 const float SLACK_PX = 0.05;  // rasterisers snap positions to 1/256 pixel or so
 
-uint surfel_number() { return AS_QUADS ? gl_InstanceIndex : gl_VertexIndex; }
-
-bool in_sample(uint number) {
-    uint h = number * 0x9e3779b9u;
+// The same surfels whatever else is drawn with them.
+bool in_sample(vec3 position) {
+    uint h = floatBitsToUint(position.x) * 0x9e3779b9u;
+    h = (h ^ floatBitsToUint(position.y) ^ (h >> 15)) * 0x9e3779b9u;
+    h = (h ^ floatBitsToUint(position.z) ^ (h >> 15)) * 0x9e3779b9u;
     h ^= h >> 16;
     h *= 0x85ebca6bu;
     h ^= h >> 13;
@@ -33,7 +34,7 @@ bool surfel_splat(out Splat splat, out vec3 centre, out vec3 normal) {
     if (!two_sided && dot(normal, towards_eye(centre)) <= 0) return false;
     float radius = in_radius * instance.scale;
     if (frame.view == VIEW_SAMPLES) {
-        if (!in_sample(surfel_number())) return false;
+        if (!in_sample(in_position)) return false;
         radius *= frame.sample_radius;
     }
     return make_splat(centre, normal, radius, in_epsilon * instance.scale * instance.epsilon_scale, splat);

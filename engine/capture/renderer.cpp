@@ -1,0 +1,190 @@
+#include "engine/capture/capture.h"
+#include "engine/capture/numeric_picture.h"
+#include "engine/passes/frame.h"
+#include "engine/passes/read_back_pass.h"
+#include "engine/render_graph/executor/executor.h"
+#include "engine/scene/gpu_model.h"
+#include "engine/vulkan/transfer.h"
+#include "preprocess/model_format/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+namespace splice {
+
+struct Renderer::Implementation {
+    explicit Implementation(const RendererOptions& options)
+        : instance({.validate = options.validate}),
+          device(instance, {.choice = gpu::parse_device_choice(options.device)}),
+          executor(device),
+          passes(device) {}
+
+    std::vector<std::byte> render_raw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
+                                      View view, FrameStats* stats);
+    void reserve_pixels(std::uint64_t bytes);
+
+    gpu::Instance instance;
+    gpu::Device device;
+    graph::Executor executor;
+    FramePasses passes;
+    graph::Graph graph;
+    gpu::Buffer pixels;
+};
+
+namespace {
+
+constexpr std::uint64_t kTexelBytes = 4;  // of both picture formats
+
+std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
+    std::vector<float> values(bytes.size() / sizeof(float));
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+}
+
+double mean_overlap(const std::vector<float>& counts) {
+    double sum = 0;
+    std::uint64_t pixels = 0;
+    for (const float count : counts) {
+        if (!std::isfinite(count) || count <= 0) continue;
+        sum += count;
+        ++pixels;
+    }
+    return pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+}
+
+std::uint8_t encoded(double channel) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(channel, 0.0, 1.0) * 255));
+}
+
+void check_settings(const CaptureSettings& settings, const VkPhysicalDeviceLimits& limits) {
+    const std::uint32_t most =
+        std::min({limits.maxFramebufferWidth, limits.maxFramebufferHeight, limits.maxImageDimension2D});
+    if (settings.width == 0 || settings.height == 0 || settings.width > most || settings.height > most)
+        throw UsageError("a picture of " + std::to_string(settings.width) + "x" + std::to_string(settings.height) +
+                         " pixels: each side must be 1 to " + std::to_string(most) + " on this device");
+}
+
+}  // namespace
+
+void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
+    if (pixels && pixels.size() == bytes) return;
+    pixels = gpu::Buffer(device, {.size = bytes,
+                                  .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                  .memory = gpu::MemoryUse::readback,
+                                  .name = "pixels"});
+}
+
+std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, const CaptureSettings& settings,
+                                                            const Camera& camera, View view, FrameStats* stats) {
+    const auto start = std::chrono::steady_clock::now();
+    const FrameSettings frame{.width = settings.width,
+                              .height = settings.height,
+                              .camera = camera,
+                              .view = view,
+                              .epsilon_scale = settings.epsilon_scale,
+                              .prefilter = settings.prefilter};
+    const DrawListOptions list_options{
+        .sides = settings.sides,
+        .draw_triangles = settings.draw_triangles && view != View::kSurfelsOnly && view != View::kSamples,
+        .draw_surfels = settings.draw_surfels && view != View::kTrianglesOnly,
+        .merge_patches = view != View::kPatches,
+        .force_quads = settings.force_quads,
+        .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0};
+    const DrawList draws = build_draw_list(scene, camera, settings.width, settings.height, list_options);
+    passes.data.update(frame, scene.lighting);
+
+    reserve_pixels(kTexelBytes * settings.width * settings.height);
+    graph.clear();
+    const graph::BufferHandle destination =
+        graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
+    const graph::ImageHandle picture = add_frame(graph, passes, frame, scene.background, draws);
+    add_read_back(graph, picture, destination, settings.width, settings.height);
+    graph::Bindings bindings;
+    bindings.bind(destination, pixels);
+    device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
+
+    const std::span<const std::byte> mapped = pixels.mapped();
+    std::vector<std::byte> bytes(mapped.begin(), mapped.begin() + static_cast<std::ptrdiff_t>(pixels.size()));
+    if (stats) {
+        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+        stats->frame_ms = elapsed.count();
+        for (const graph::PassTiming& timing : executor.timings())
+            stats->passes.push_back({timing.name, timing.gpu_ms});
+        stats->surfels_drawn = draws.surfels;
+        stats->triangles_drawn = draws.triangles;
+    }
+    return bytes;
+}
+
+Renderer::Renderer(const RendererOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
+Renderer::~Renderer() = default;
+
+std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model) {
+    return std::make_shared<const GpuModel>(implementation_->device, model);
+}
+
+Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
+    Implementation& engine = *implementation_;
+    check_settings(settings, engine.device.limits());
+    Camera camera = settings.camera;
+    if (settings.clip_to_scene) fit_clip_planes(camera, scene.bounds());
+
+    Frame frame;
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.stats.device = device_name();
+    const std::size_t texels = std::size_t{settings.width} * settings.height;
+    frame.coverage.resize(texels);
+    const std::vector<std::byte> raw = engine.render_raw(scene, settings, camera, settings.view, &frame.stats);
+    const Background& background = scene.background;
+    if (is_numeric(settings.view)) {
+        const std::vector<float> values = floats_of(raw);
+        for (std::size_t i = 0; i < texels; ++i)
+            frame.coverage[i] = std::isinf(values[i]) ? 0 : 255;
+        const std::uint8_t empty[4] = {encoded(background.colour.r), encoded(background.colour.g),
+                                       encoded(background.colour.b),
+                                       static_cast<std::uint8_t>(background.transparent ? 0 : 255)};
+        frame.rgba = picture_of_numbers(settings.view, values, settings.width, settings.height, empty).rgba;
+        if (settings.view == View::kDepth) frame.depth = values;
+        if (settings.view == View::kOverlap) frame.stats.overlap_mean = mean_overlap(values);
+    } else {
+        frame.rgba.resize(raw.size());
+        std::memcpy(frame.rgba.data(), raw.data(), raw.size());
+        for (std::size_t i = 0; i < texels; ++i) {
+            frame.coverage[i] = frame.rgba[4 * i + 3];
+            if (!background.transparent) frame.rgba[4 * i + 3] = 255;
+        }
+    }
+    frame.stats.covered_pixels =
+        static_cast<std::uint64_t>(std::count(frame.coverage.begin(), frame.coverage.end(), std::uint8_t{255}));
+    if (settings.want_depth && frame.depth.empty())
+        frame.depth = floats_of(engine.render_raw(scene, settings, camera, View::kDepth, nullptr));
+    if (settings.want_overlap && settings.view != View::kOverlap)
+        frame.stats.overlap_mean =
+            mean_overlap(floats_of(engine.render_raw(scene, settings, camera, View::kOverlap, nullptr)));
+    return frame;
+}
+
+const std::string& Renderer::device_name() const {
+    return implementation_->device.info().name;
+}
+
+std::vector<std::string> Renderer::validation_messages() const {
+    std::vector<std::string> lines;
+    for (const gpu::ValidationMessage& message : implementation_->instance.messages())
+        lines.push_back(message.id + ": " + message.text);
+    return lines;
+}
+
+std::vector<std::string> list_devices() {
+    const gpu::Instance instance;
+    std::vector<std::string> lines;
+    for (const gpu::DeviceInfo& info : gpu::list_devices(instance))
+        lines.push_back(std::to_string(info.index) + ": " + info.name + (info.is_cpu() ? " [cpu]" : "") +
+                        (info.unusable.empty() ? "" : " [unusable: " + info.unusable + "]"));
+    return lines;
+}
+
+}  // namespace splice

@@ -1,0 +1,47 @@
+#include "engine/passes/frame.h"
+
+#include "preprocess/model_format/error.h"
+
+#include <limits>
+
+namespace splice {
+
+FrameFormats::FrameFormats(const gpu::Device& device)
+    : depth_stencil(device.depth_stencil_format()),
+      accumulation(device.first_supported({VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT},
+                                          VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT)) {}
+
+FramePasses::FramePasses(gpu::Device& device)
+    : data(device),
+      formats(device),
+      triangle(device, data),
+      surfel_visibility(device, data),
+      surfel_attribute(device, data),
+      surfel_normalise(device, data) {}
+
+VkFormat picture_format(View view) {
+    return is_numeric(view) ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
+}
+
+graph::ImageHandle add_frame(graph::Graph& graph, FramePasses& passes, const FrameSettings& settings,
+                             const Background& background, const DrawList& draws) {
+    const auto image = [&](const char* name, VkFormat format) {
+        return graph.create_image(name, {.format = format, .width = settings.width, .height = settings.height});
+    };
+    FrameTargets targets{
+        // Half floats suffice for colours, not for depths.
+        .triangle_colour = image("triangle_colour", is_numeric(settings.view) ? VK_FORMAT_R32G32B32A32_SFLOAT
+                                                                              : VK_FORMAT_R16G16B16A16_SFLOAT),
+        .depth = image("depth", passes.formats.depth_stencil),
+        .accumulation = image("accumulation", passes.formats.accumulation),
+        .picture = image("picture", picture_format(settings.view)),
+    };
+
+    passes.triangle.add(graph, targets, settings, draws);
+    passes.surfel_visibility.add(graph, targets, settings, draws);
+    passes.surfel_attribute.add(graph, targets, settings, draws);
+    passes.surfel_normalise.add(graph, targets, settings, background);
+    return targets.picture;
+}
+
+}  // namespace splice

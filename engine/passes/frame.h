@@ -1,0 +1,43 @@
+// The frame of the hybrid pipeline (thesis 3.4, 4.3): triangles and surfels spliced in one depth buffer.
+#pragma once
+
+#include "engine/passes/frame_data.h"
+#include "engine/passes/surfel_attribute_pass.h"
+#include "engine/passes/surfel_normalise_pass.h"
+#include "engine/passes/surfel_visibility_pass.h"
+#include "engine/passes/triangle_pass.h"
+#include "engine/render_graph/graph.h"
+#include "engine/scene/draw_list.h"
+#include "engine/vulkan/device.h"
+
+namespace splice {
+
+/// Formats that the device was found to support.
+struct FrameFormats {
+    VkFormat depth_stencil;
+    VkFormat accumulation;  // blendable float, 32 bits a channel where possible
+    explicit FrameFormats(const gpu::Device& device);
+};
+
+/// Shaders, layouts and pipelines of all passes of one device; made once.
+struct FramePasses {
+    explicit FramePasses(gpu::Device& device);
+
+    FrameData data;
+    FrameFormats formats;
+    TrianglePass triangle;
+    SurfelVisibilityPass surfel_visibility;
+    SurfelAttributePass surfel_attribute;
+    SurfelNormalisePass surfel_normalise;
+};
+
+/// Format of the picture: 8-bit RGBA, sRGB-encoded by the shader, alpha coverage; or float for numeric views, where
+/// uncovered pixels keep +infinity.
+VkFormat picture_format(View view);
+
+/// Adds the passes of one frame to the graph, in order, and returns the picture. `draws`, `settings` and `passes` must
+/// live until the graph has been executed; passes.data must have been updated with the same settings.
+graph::ImageHandle add_frame(graph::Graph& graph, FramePasses& passes, const FrameSettings& settings,
+                             const Background& background, const DrawList& draws);
+
+}  // namespace splice

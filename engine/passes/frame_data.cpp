@@ -1,0 +1,102 @@
+#include "engine/passes/frame_data.h"
+
+#include <cstring>
+#include <vector>
+
+namespace splice {
+
+namespace {
+
+// The view of sampling (thesis figure 4.4) has to show single disks: so few, and so much smaller, that they lie apart.
+constexpr float kSampleShare = 0.12f;
+constexpr float kSampleRadius = 0.6f;
+
+LightRecord light_record(const Light& light, const glm::dmat4& view) {
+    const glm::dmat4 to_view = light.space == LightSpace::kWorld ? view : glm::dmat4(1.0);
+    LightRecord record{};
+    if (light.kind == LightKind::kDirectional) {
+        record.vector = glm::vec4(glm::normalize(-glm::dmat3(to_view) * light.direction), 0);
+        record.colour = glm::vec4(light.colour, 0);
+    } else {
+        record.vector = glm::vec4(glm::dvec3(to_view * glm::dvec4(light.position, 1)), 1);
+        record.colour = glm::vec4(light.colour, 1 / (light.range * light.range));
+    }
+    return record;
+}
+
+}  // namespace
+
+bool is_numeric(View view) {
+    return view == View::kDepth || view == View::kVisibility || view == View::kOverlap;
+}
+
+gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device) {
+    const VkShaderStageFlags stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    return {device,
+            {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, stages, 1}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, stages, 1}}};
+}
+
+FrameData::FrameData(gpu::Device& device)
+    : device_(device),
+      layout_(frame_set_layout(device)),
+      pool_(device),
+      uniforms_(device, {.size = sizeof(FrameUniforms),
+                         .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                         .memory = gpu::MemoryUse::upload,
+                         .name = "frame uniforms"}),
+      set_(pool_.allocate(layout_)) {
+    reserve_lights(1);
+}
+
+void FrameData::reserve_lights(std::size_t count) {
+    if (lights_ && lights_.size() >= count * sizeof(LightRecord)) return;
+    lights_ = gpu::Buffer(device_, {.size = count * sizeof(LightRecord),
+                                    .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                    .memory = gpu::MemoryUse::upload,
+                                    .name = "lights"});
+    gpu::DescriptorWriter(set_)
+        .uniform_buffer(0, uniforms_.handle())
+        .storage_buffer(1, lights_.handle())
+        .write(device_);
+}
+
+void FrameData::update(const FrameSettings& settings, const Lighting& lighting) {
+    const Camera& camera = settings.camera;
+    FrameUniforms uniforms{};
+    uniforms.projection = glm::mat4(projection_matrix(camera, settings.width, settings.height));
+    uniforms.viewport = glm::vec2(settings.width, settings.height);
+    uniforms.pixel_scale = static_cast<float>(pixel_scale(camera, settings.height));
+    uniforms.near_plane = static_cast<float>(camera.near_plane);
+    uniforms.far_plane = static_cast<float>(camera.far_plane);
+    uniforms.orthographic = camera.orthographic ? 1 : 0;
+    uniforms.view = static_cast<std::uint32_t>(settings.view);
+    uniforms.prefilter = settings.prefilter ? 1 : 0;
+    uniforms.ambient = glm::vec3(lighting.ambient);
+    uniforms.light_count = static_cast<std::uint32_t>(lighting.lights.size());
+    uniforms.specular = static_cast<float>(lighting.specular);
+    uniforms.shininess = static_cast<float>(lighting.shininess);
+    uniforms.sample_share = kSampleShare;
+    uniforms.sample_radius = kSampleRadius;
+    std::memcpy(uniforms_.mapped().data(), &uniforms, sizeof uniforms);
+
+    const glm::dmat4 view = view_matrix(camera);
+    std::vector<LightRecord> records;
+    for (const Light& light : lighting.lights)
+        records.push_back(light_record(light, view));
+    reserve_lights(records.size());
+    if (!records.empty()) std::memcpy(lights_.mapped().data(), records.data(), records.size() * sizeof(LightRecord));
+}
+
+InstanceConstants instance_constants(const InstanceDraws& draws, double epsilon_scale) {
+    InstanceConstants constants{};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            constants.model_to_view[row][column] = static_cast<float>(draws.model_to_view[column][row]);
+    constants.scale = static_cast<float>(draws.scale);
+    constants.epsilon_scale = static_cast<float>(epsilon_scale);
+    constants.flags = draws.two_sided ? kInstanceTwoSided : 0u;
+    constants.first_patch = draws.first_patch;
+    return constants;
+}
+
+}  // namespace splice

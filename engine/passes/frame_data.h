@@ -1,0 +1,53 @@
+// What all passes of a frame share: settings, the draw list, and set 0 with the frame's uniforms and lights.
+#pragma once
+
+#include "engine/passes/shader_types.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/draw_list.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/view.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/descriptor.h"
+#include "engine/vulkan/device.h"
+#include "engine/vulkan/pipeline.h"
+
+#include <cstdint>
+
+namespace splice {
+
+struct FrameSettings {
+    std::uint32_t width = 512, height = 512;  // pixels
+    Camera camera;
+    View view = View::kShaded;
+    double epsilon_scale = 1;
+    bool prefilter = true;
+};
+
+/// Views of numbers fill a float target, the others an 8-bit one.
+bool is_numeric(View view);
+
+/// Stages of the two descriptor sets: set 0 is the frame's for every pass.
+gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device);
+
+/// The buffers behind set 0, written anew for each frame.
+class FrameData {
+  public:
+    explicit FrameData(gpu::Device& device);
+    /// No submitted work may still read the frame before.
+    void update(const FrameSettings& settings, const Lighting& lighting);
+    VkDescriptorSet set() const { return set_; }
+    const gpu::DescriptorSetLayout& layout() const { return layout_; }
+
+  private:
+    void reserve_lights(std::size_t count);
+
+    gpu::Device& device_;
+    gpu::DescriptorSetLayout layout_;
+    gpu::DescriptorPool pool_;
+    gpu::Buffer uniforms_, lights_;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+};
+
+InstanceConstants instance_constants(const InstanceDraws& draws, double epsilon_scale);
+
+}  // namespace splice

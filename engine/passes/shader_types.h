@@ -1,0 +1,47 @@
+// What shaders/glsl/include/frame.glsl declares, in C++; tests/engine/test_shader_layouts.cpp compares the two by
+// reflection of the compiled shaders.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace splice {
+
+struct FrameUniforms {
+    glm::mat4 projection;
+    glm::vec2 viewport;
+    float pixel_scale;
+    float near_plane;
+    float far_plane;
+    std::uint32_t orthographic;
+    std::uint32_t view;
+    std::uint32_t prefilter;
+    glm::vec3 ambient;
+    std::uint32_t light_count;
+    float specular;
+    float shininess;
+    float sample_share;
+    float sample_radius;
+};
+static_assert(sizeof(FrameUniforms) == 128 && offsetof(FrameUniforms, ambient) == 96);
+
+struct LightRecord {
+    glm::vec4 vector;
+    glm::vec4 colour;
+};
+static_assert(sizeof(LightRecord) == 32);
+
+enum InstanceFlags : std::uint32_t { kInstanceTwoSided = 1u << 0 };
+
+struct InstanceConstants {
+    glm::vec4 model_to_view[3];
+    float scale;
+    float epsilon_scale;
+    std::uint32_t flags;
+    std::uint32_t first_patch;
+};
+static_assert(sizeof(InstanceConstants) == 64);
+
+}  // namespace splice

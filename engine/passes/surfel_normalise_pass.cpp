@@ -1,0 +1,83 @@
+#include "engine/passes/surfel_normalise_pass.h"
+
+#include "shaders/surfel_normalise_frag.h"
+#include "shaders/surfel_normalise_vert.h"
+
+#include <limits>
+
+namespace splice {
+
+namespace {
+
+VkClearValue empty_picture(View view, const Background& background) {
+    if (is_numeric(view)) {
+        const float nothing = std::numeric_limits<float>::infinity();
+        return graph::clear_colour(nothing, 0, 0, 0);
+    }
+    const glm::vec3 colour(background.transparent ? glm::dvec3(0) : background.colour);
+    return graph::clear_colour(colour.r, colour.g, colour.b, 0);
+}
+
+}  // namespace
+
+SurfelNormalisePass::SurfelNormalisePass(gpu::Device& device, const FrameData& data)
+    : device_(device),
+      data_(data),
+      input_layout_(device, {{0, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, VK_SHADER_STAGE_FRAGMENT_BIT, 1},
+                             {1, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, VK_SHADER_STAGE_FRAGMENT_BIT, 1},
+                             {2, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, VK_SHADER_STAGE_FRAGMENT_BIT, 1}}),
+      layout_(device, std::array{data.layout().handle(), input_layout_.handle()}, sizeof(InstanceConstants),
+              VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT),
+      vertex_(device, surfel_normalise_vert, "surfel_normalise.vert"),
+      fragment_(device, surfel_normalise_frag, "surfel_normalise.frag"),
+      pool_(device) {}
+
+void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
+                              const Background& background) {
+    graph::Pass pass = graph.add_pass("surfel_normalise", graph::PassKind::graphics);
+    pass.input_attachment(targets.triangle_colour);
+    pass.input_attachment(targets.accumulation);
+    pass.input_attachment(targets.depth);
+    pass.depth_stencil_read(targets.depth);
+    targets.picture =
+        pass.colour_attachment(targets.picture, graph::Contents::clear(empty_picture(settings.view, background)));
+    pass.record([this, targets](const graph::PassContext& context) { draw(context, targets); });
+}
+
+void SurfelNormalisePass::draw(const graph::PassContext& context, const FrameTargets& targets) {
+    const std::array sets{data_.set(), input_set(context, targets)};
+    for (const std::uint32_t owner : {kTriangleStencil, kSurfelStencil}) {
+        vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                          pipelines_[owner].get(device_, context, [&] { return pipeline_options(owner); }));
+        vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0,
+                                static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
+        vkCmdDraw(context.commands, 3, 1, 0, 0);
+    }
+}
+
+VkDescriptorSet SurfelNormalisePass::input_set(const graph::PassContext& context, const FrameTargets& targets) {
+    if (inputs_.plan_id == context.plan_id && inputs_.set != VK_NULL_HANDLE) return inputs_.set;
+    pool_.reset();  // one frame is in flight, and it is this one
+    inputs_ = {context.plan_id, pool_.allocate(input_layout_)};
+    gpu::DescriptorWriter(inputs_.set)
+        .input_attachment(0, context.view(targets.triangle_colour), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
+        .input_attachment(1, context.view(targets.accumulation), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
+        .input_attachment(2, context.depth_view(targets.depth), VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
+        .write(device_);
+    return inputs_.set;
+}
+
+gpu::GraphicsPipelineOptions SurfelNormalisePass::pipeline_options(std::uint32_t owner) const {
+    gpu::GraphicsPipelineOptions options;
+    options.name = "surfel_normalise";
+    options.vertex = {&vertex_, {}};
+    options.fragment = {&fragment_, {{0, owner == kSurfelStencil ? 1u : 0u}}};
+    options.layout = layout_.handle();
+    options.stencil_test = true;
+    options.stencil_front = owned_by(owner);
+    options.stencil_back = options.stencil_front;
+    options.blends = {gpu::Blend::replace()};
+    return options;
+}
+
+}  // namespace splice

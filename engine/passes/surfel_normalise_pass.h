@@ -1,0 +1,38 @@
+// Subpass 4: full screen; sums divided by weights where surfels own the pixel, triangles elsewhere (thesis 3.4.2,
+// normalization). Reads the other subpasses' results at its own pixel only.
+#pragma once
+
+#include "engine/passes/frame_data.h"
+#include "engine/passes/frame_targets.h"
+#include "engine/render_graph/executor/executor.h"
+
+#include <array>
+#include <cstdint>
+
+namespace splice {
+
+class SurfelNormalisePass {
+  public:
+    SurfelNormalisePass(gpu::Device& device, const FrameData& data);
+    void add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const Background& background);
+
+  private:
+    struct Inputs {
+        std::uint64_t plan_id = 0;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+    };
+    void draw(const graph::PassContext& context, const FrameTargets& targets);
+    VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets);
+    gpu::GraphicsPipelineOptions pipeline_options(std::uint32_t owner) const;
+
+    const gpu::Device& device_;
+    const FrameData& data_;
+    gpu::DescriptorSetLayout input_layout_;
+    gpu::PipelineLayout layout_;
+    gpu::ShaderModule vertex_, fragment_;
+    gpu::DescriptorPool pool_;
+    Inputs inputs_;
+    std::array<graph::PassPipelines, 2> pipelines_;  // by owner
+};
+
+}  // namespace splice

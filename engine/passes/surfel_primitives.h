@@ -1,0 +1,35 @@
+// How surfels get to the rasteriser, the same for the visibility and the attribute pass: point sprites where the device
+// draws them right, quads where it does not (larger than its points, or the centre beyond the frustum).
+#pragma once
+
+#include "engine/passes/frame_data.h"
+#include "engine/render_graph/executor/executor.h"
+#include "engine/scene/draw_list.h"
+
+#include <array>
+#include <functional>
+
+namespace splice {
+
+class SurfelPrimitives {
+  public:
+    SurfelPrimitives(gpu::Device& device, const FrameData& data);
+
+    VkPipelineLayout layout() const { return layout_.handle(); }
+
+    /// Draws the surfels of the list. `options` gives the pass's own state; vertex input, topology and layout are
+    /// filled in here.
+    void draw(const graph::PassContext& context, const FrameSettings& settings, const DrawList& draws,
+              const std::function<gpu::GraphicsPipelineOptions()>& options);
+
+  private:
+    void draw_ranges(const graph::PassContext& context, const FrameSettings& settings, const InstanceDraws& instance,
+                     const std::function<gpu::GraphicsPipelineOptions()>& options, bool quads);
+
+    const gpu::Device& device_;
+    const FrameData& data_;
+    gpu::PipelineLayout layout_;
+    std::array<graph::PassPipelines, 2> pipelines_;  // sprites, quads
+};
+
+}  // namespace splice

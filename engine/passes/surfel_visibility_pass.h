@@ -1,0 +1,22 @@
+// Subpass 2: the true depth of every surfel, moved away from the eye by epsilon, and the stencil value that says which
+// pixels are the surfels' (thesis 3.4.2, visibility splatting).
+#pragma once
+
+#include "engine/passes/frame_targets.h"
+#include "engine/passes/surfel_primitives.h"
+
+namespace splice {
+
+class SurfelVisibilityPass {
+  public:
+    SurfelVisibilityPass(gpu::Device& device, const FrameData& data);
+    void add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const DrawList& draws);
+
+  private:
+    gpu::GraphicsPipelineOptions pipeline_options() const;
+
+    SurfelPrimitives primitives_;
+    gpu::ShaderModule vertex_, fragment_;
+};
+
+}  // namespace splice

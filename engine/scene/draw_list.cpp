@@ -1,0 +1,198 @@
+#include "engine/scene/draw_list.h"
+
+#include "engine/scene/gpu_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace splice {
+
+namespace {
+
+enum class Containment { kOutside, kPartly, kInside };
+
+// Pixels by which a splat may exceed its disk: the prefilter's sqrt(2), and rounding.
+constexpr double kPrefilterReach = 1.5;
+
+template <typename T>
+glm::dvec3 vector_of(const T (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+class Culler {
+  public:
+    Culler(const Camera& camera, std::uint32_t width, std::uint32_t height, const DrawListOptions& options,
+           InstanceDraws& draws)
+        : camera_(camera), options_(options), draws_(draws), scale_(pixel_scale(camera, height)) {
+        half_x_ = 0.5 * width / scale_;
+        half_y_ = 0.5 * height / scale_;
+    }
+
+    void visit_all() {
+        const auto& octree = draws_.model->octree();
+        if (octree.empty()) {
+            visit_patches(0, static_cast<std::uint32_t>(draws_.model->patches().size()));
+        } else {
+            visit_node(0);
+        }
+    }
+
+  private:
+    struct Extent {
+        Containment containment;
+        double nearest;  // depth, view space
+    };
+
+    // A box of unit-box space against the frustum. The prefilter lets splats reach beyond their disks, and so beyond
+    // the box: what misses the picture by no more than that is kept.
+    Extent locate(const float (&low)[3], const float (&high)[3]) const {
+        const double margin = kPrefilterReach / scale_;
+        std::array<int, 5> outside{};
+        std::array<int, 5> inside{};
+        double nearest = std::numeric_limits<double>::max();
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec4 p =
+                draws_.model_to_view * glm::dvec4((corner & 1) ? high[0] : low[0], (corner & 2) ? high[1] : low[1],
+                                                  (corner & 4) ? high[2] : low[2], 1);
+            const double depth = -p.z;
+            const double reach = camera_.orthographic ? 1 : depth;
+            const std::array<double, 5> beyond{p.x - half_x_ * reach, -p.x - half_x_ * reach, p.y - half_y_ * reach,
+                                               -p.y - half_y_ * reach, camera_.near_plane - depth};
+            const double slack = margin * std::max(reach, 0.0);
+            for (std::size_t plane = 0; plane < beyond.size(); ++plane) {
+                outside[plane] += beyond[plane] > (plane < 4 ? slack : 0) ? 1 : 0;
+                inside[plane] += beyond[plane] < 0 ? 1 : 0;
+            }
+            nearest = std::min(nearest, depth);
+        }
+        const auto all = [](int corners) { return corners == 8; };
+        if (std::any_of(outside.begin(), outside.end(), all)) return {Containment::kOutside, nearest};
+        return {std::all_of(inside.begin(), inside.end(), all) ? Containment::kInside : Containment::kPartly, nearest};
+    }
+
+    // True if every normal in the patch's cone faces away from the eye, wherever in the patch it sits (Pajarola et
+    // al. 2004, section 6.2, with the extent of the patch taken into account: beta + theta + alpha < 90 degrees).
+    bool faces_away(const format::Patch& patch) const {
+        if (patch.cone_cos <= 0) return false;
+        const glm::dvec3 axis = glm::normalize(glm::dmat3(draws_.model_to_view) * vector_of(patch.cone_axis));
+        const double spread = std::acos(std::min(static_cast<double>(patch.cone_cos), 1.0));
+        glm::dvec3 away(0, 0, -1);
+        double alpha = 0;
+        if (!camera_.orthographic) {
+            const glm::dvec3 low = vector_of(patch.bounds_min), high = vector_of(patch.bounds_max);
+            const glm::dvec3 centre(draws_.model_to_view * glm::dvec4((low + high) * 0.5, 1));
+            const double radius = 0.5 * glm::length(high - low) * draws_.scale;
+            const double distance = glm::length(centre);
+            if (distance <= radius) return false;
+            away = centre / distance;
+            alpha = std::asin(radius / distance);
+        }
+        const double beta = std::acos(std::clamp(glm::dot(axis, away), -1.0, 1.0));
+        constexpr double kRounding = 1e-3;  // radians; normals are quantised
+        return beta + spread + alpha + kRounding < glm::radians(90.0);
+    }
+
+    void visit_node(std::uint32_t index) {
+        const auto& octree = draws_.model->octree();
+        const format::OctreeNode& node = octree[index];
+        const Extent extent = locate(node.bounds_min, node.bounds_max);
+        if (extent.containment == Containment::kOutside) return;
+        std::uint32_t next = node.first_patch;
+        const std::uint32_t end = node.first_patch + node.patch_count;
+        if (extent.containment == Containment::kPartly) {
+            for (std::uint32_t child = 0; child < node.child_count; ++child) {
+                const format::OctreeNode& below = octree[node.first_child + child];
+                visit_patches(next, below.first_patch);
+                visit_node(node.first_child + child);
+                next = below.first_patch + below.patch_count;
+            }
+        }
+        visit_patches(next, end);
+    }
+
+    void visit_patches(std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t patch = first; patch < end; ++patch)
+            visit_patch(patch);
+    }
+
+    void visit_patch(std::uint32_t index) {
+        const format::Patch& patch = draws_.model->patches()[index];
+        const bool triangles = patch.representation == format::Representation::kTriangles;
+        if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return;
+        const Extent extent = locate(patch.bounds_min, patch.bounds_max);
+        if (extent.containment == Containment::kOutside) return;
+        if (triangles) {
+            const format::Lod& finest = draws_.model->lods()[patch.first_lod];
+            append(draws_.triangles, {finest.first_index, finest.index_count, patch.material, index},
+                   options_.merge_patches);
+            return;
+        }
+        if (!draws_.two_sided && faces_away(patch)) return;
+        const bool sprite = !options_.force_quads && extent.containment == Containment::kInside &&
+                            largest_splat(patch, extent.nearest) <= options_.max_point_size;
+        append(sprite ? draws_.sprites : draws_.quads, {patch.first_surfel, patch.surfel_count, 0, index}, true);
+    }
+
+    // Upper bound of the size in pixels of the point that encloses any splat of a patch inside the frustum: for |a|,
+    // |b| <= r, (x + a) / (d + b) - x / d is at most r (1 + |x / d|) / (d - r).
+    double largest_splat(const format::Patch& patch, double nearest) const {
+        const double radius = patch.max_surfel_radius * draws_.scale;
+        const double stretch = camera_.orthographic ? 1 : (1 + std::max(half_x_, half_y_)) / nearest;
+        return 2 * (scale_ * radius * stretch + kPrefilterReach);
+    }
+
+    static void append(std::vector<DrawRange>& ranges, const DrawRange& range, bool merge) {
+        if (range.count == 0) return;
+        if (merge && !ranges.empty()) {
+            DrawRange& last = ranges.back();
+            const bool fits = last.count <= std::numeric_limits<std::uint32_t>::max() - range.count;
+            if (last.material == range.material && last.first + last.count == range.first && fits) {
+                last.count += range.count;
+                return;
+            }
+        }
+        ranges.push_back(range);
+    }
+
+    const Camera& camera_;
+    const DrawListOptions& options_;
+    InstanceDraws& draws_;
+    double scale_;            // pixels per unit at depth 1, or anywhere
+    double half_x_, half_y_;  // of the picture, at depth 1 or anywhere
+};
+
+}  // namespace
+
+DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                         const DrawListOptions& options) {
+    DrawList list;
+    const glm::dmat4 view = view_matrix(camera);
+    std::uint32_t first_patch = 0;
+    for (const Instance& instance : scene.instances) {
+        const format::ModelInfo& info = instance.model->info();
+        const Transform& transform = instance.transform;
+        InstanceDraws draws;
+        draws.model = instance.model.get();
+        draws.scale = transform.scale * info.source_scale;
+        glm::dmat4 to_world(transform.rotation * draws.scale);
+        to_world[3] = glm::dvec4(
+            transform.rotation * (vector_of(info.source_offset) * transform.scale) + transform.translation, 1);
+        draws.model_to_view = view * to_world;
+        draws.two_sided =
+            options.sides == Sides::kAsBaked ? instance.model->two_sided() : options.sides == Sides::kTwoSided;
+        draws.first_patch = first_patch;
+        first_patch += static_cast<std::uint32_t>(instance.model->patches().size());
+        Culler(camera, width, height, options, draws).visit_all();
+        for (const DrawRange& range : draws.triangles)
+            list.triangles += range.count / 3;
+        for (const auto* ranges : {&draws.sprites, &draws.quads})
+            for (const DrawRange& range : *ranges)
+                list.surfels += range.count;
+        list.instances.push_back(std::move(draws));
+    }
+    return list;
+}
+
+}  // namespace splice

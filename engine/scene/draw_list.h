@@ -1,0 +1,53 @@
+// What of a scene is sent to the device for one view: patches culled on the CPU (frustum, and normal cones where
+// back-facing surfaces are invisible), the rest merged into few draws and sorted by the primitive that draws them
+// right.
+#pragma once
+
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace splice {
+
+/// Consecutive indices or surfels of one model.
+struct DrawRange {
+    std::uint64_t first = 0;  // into the model's index or surfel buffer
+    std::uint32_t count = 0;
+    std::uint32_t material = 0;  // triangles
+    std::uint32_t patch = 0;     // the first patch of the range
+};
+
+struct InstanceDraws {
+    const GpuModel* model = nullptr;
+    glm::dmat4 model_to_view{1.0};  // from unit-box units
+    double scale = 1;               // world units per unit-box unit
+    bool two_sided = false;
+    std::uint32_t first_patch = 0;  // patches of the instances before
+    std::vector<DrawRange> triangles;
+    std::vector<DrawRange> sprites;  // surfels that fit a point: small, and wholly inside the frustum
+    std::vector<DrawRange> quads;    // the others
+};
+
+struct DrawList {
+    std::vector<InstanceDraws> instances;
+    std::uint64_t triangles = 0, surfels = 0;
+};
+
+enum class Sides { kAsBaked, kOneSided, kTwoSided };
+
+struct DrawListOptions {
+    Sides sides = Sides::kAsBaked;
+    bool draw_triangles = true, draw_surfels = true;
+    bool merge_patches = true;  // false: one draw a triangle patch, so that shaders can tell them apart
+    bool force_quads = false;
+    double max_point_size = 255;  // pixels, of the device
+};
+
+DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                         const DrawListOptions& options);
+
+}  // namespace splice

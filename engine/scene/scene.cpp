@@ -1,0 +1,39 @@
+#include "engine/scene/scene.h"
+
+#include "engine/scene/gpu_model.h"
+
+namespace splice {
+
+Lighting default_lighting() {
+    Lighting lighting;
+    Light key;
+    key.space = LightSpace::kCamera;
+    key.direction = {0.4, -0.5, -1};
+    key.colour = glm::dvec3(0.85);
+    lighting.lights.push_back(key);
+    return lighting;
+}
+
+Box Scene::bounds() const {
+    Box all;
+    for (const Instance& instance : instances) {
+        const Box box = instance.model->bounds();
+        if (box.empty()) continue;
+        const Transform& transform = instance.transform;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 p((corner & 1) ? box.maximum.x : box.minimum.x,
+                               (corner & 2) ? box.maximum.y : box.minimum.y,
+                               (corner & 4) ? box.maximum.z : box.minimum.z);
+            all.extend(transform.rotation * (p * transform.scale) + transform.translation);
+        }
+    }
+    return all;
+}
+
+Scene scene_of(std::shared_ptr<const GpuModel> model) {
+    Scene scene;
+    scene.instances.push_back({std::move(model), {}});
+    return scene;
+}
+
+}  // namespace splice

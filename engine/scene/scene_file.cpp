@@ -1,0 +1,282 @@
+#include "engine/scene/scene_file.h"
+
+#include "engine/scene/json_value.h"
+#include "preprocess/model_format/error.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace splice {
+
+namespace {
+
+constexpr double kLargest = 1e30;  // lengths beyond overflow single precision once squared
+
+double srgb_to_linear(double c) {
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+// A colour in a scene file: a name or #rrggbb (sRGB-encoded), or three linear numbers where light is meant.
+glm::dvec3 linear_colour(const JsonValue& value) {
+    if (value.is_string()) {
+        const auto colour = parse_colour(value.string());
+        if (!colour) value.fail("a colour like \"#ff8000\"");
+        return {srgb_to_linear(colour->r), srgb_to_linear(colour->g), srgb_to_linear(colour->b)};
+    }
+    const auto channel = [](const JsonValue& one) { return one.number(0, kLargest, "a number that is not negative"); };
+    if (value.is_number()) return glm::dvec3(channel(value));
+    if (value.is_array() && value.json().size() == 3)
+        return {channel(value.element(0)), channel(value.element(1)), channel(value.element(2))};
+    value.fail("a colour: \"#rrggbb\", a number or three numbers");
+}
+
+glm::dvec3 direction(const JsonValue& value) {
+    const glm::dvec3 v = value.vector();
+    if (!(glm::length(v) > 0) || glm::length(v) > kLargest) value.fail("a direction other than zero");
+    return v;
+}
+
+template <typename T, std::size_t count>
+T choice(const JsonValue& value, const std::array<std::pair<std::string_view, T>, count>& names) {
+    const std::string text = value.is_string() ? value.string() : "";
+    std::string list;
+    for (const auto& [name, meaning] : names) {
+        if (name == text) return meaning;
+        list += (list.empty() ? "\"" : ", \"") + std::string(name) + "\"";
+    }
+    value.fail("one of " + list);
+}
+
+Transform read_transform(const JsonValue& value) {
+    value.expect_members({"scale", "rotation", "translation"});
+    Transform transform;
+    if (const auto scale = value.member("scale"))
+        transform.scale = scale->number(1 / kLargest, kLargest, "a positive number");
+    if (const auto rotation = value.member("rotation")) {
+        rotation->expect_members({"axis", "angle"});
+        const glm::dvec3 axis = glm::normalize(direction(rotation->required("axis")));
+        const double angle = rotation->required("angle").any_number();
+        transform.rotation = glm::dmat3(glm::rotate(glm::dmat4(1.0), glm::radians(angle), axis));
+    }
+    if (const auto translation = value.member("translation")) transform.translation = translation->vector();
+    return transform;
+}
+
+ShapeDescription read_shape(const JsonValue& value) {
+    ShapeDescription shape;
+    if (!value.json().is_object()) value.fail("an object");
+    shape.kind = value.required("kind").string();
+    for (const auto& [name, parameter] : value.json().items()) {
+        if (name == "kind") continue;
+        shape.parameters[name] = value.required(name).any_number();
+    }
+    return shape;
+}
+
+SceneModel read_model(const JsonValue& value, const std::filesystem::path& folder) {
+    value.expect_members({"file", "shape", "transform", "unit_box", "representation", "triangle_share"});
+    SceneModel model;
+    const auto file = value.member("file"), shape = value.member("shape");
+    if (file.has_value() == shape.has_value()) value.fail("an object with either \"file\" or \"shape\"");
+    if (file) {
+        const std::string name = file->string();
+        if (name.empty()) file->fail("the name of a model or mesh file");
+        model.source = folder / name;
+    } else {
+        model.source = read_shape(*shape);
+    }
+    if (const auto transform = value.member("transform")) model.transform = read_transform(*transform);
+    if (const auto unit_box = value.member("unit_box")) model.unit_box = unit_box->boolean();
+    if (const auto representation = value.member("representation"))
+        model.representation = choice(*representation, std::array<std::pair<std::string_view, SceneRepresentation>, 3>{
+                                                           {{"hybrid", SceneRepresentation::kHybrid},
+                                                            {"triangles", SceneRepresentation::kTriangles},
+                                                            {"surfels", SceneRepresentation::kSurfels}}});
+    if (const auto share = value.member("triangle_share"))
+        model.triangle_share = share->number(0, 1, "a number from 0 to 1");
+    return model;
+}
+
+void read_camera(const JsonValue& value, SceneDescription& scene) {
+    value.expect_members({"eye", "target", "up", "fov", "orthographic", "height", "azimuth", "elevation", "zoom"});
+    double fov = 40;
+    if (const auto given = value.member("fov")) fov = given->number(1, 170, "an angle from 1 to 170 degrees");
+    const auto orthographic_member = value.member("orthographic");
+    const bool orthographic = orthographic_member && orthographic_member->boolean();
+    if (value.member("eye")) {
+        for (const char* name : {"azimuth", "elevation", "zoom"})
+            if (const auto extra = value.member(name)) extra->fail("nothing beside \"eye\"");
+        Camera camera;
+        camera.eye = value.required("eye").vector();
+        camera.target = value.required("target").vector();
+        if (const auto up = value.member("up")) camera.up = direction(*up);
+        camera.fov_y_degrees = fov;
+        camera.orthographic = orthographic;
+        if (orthographic) camera.orthographic_height = value.required("height").positive_number();
+        if (glm::length(glm::cross(camera.target - camera.eye, camera.up)) == 0)
+            value.fail("eye and target apart, and up in another direction");
+        scene.camera = camera;
+        return;
+    }
+    for (const char* name : {"target", "up", "height"})
+        if (const auto extra = value.member(name)) extra->fail("\"eye\" beside it");
+    scene.framing.fov_y_degrees = fov;
+    scene.framing.orthographic = orthographic;
+    if (const auto azimuth = value.member("azimuth")) scene.framing.azimuth_degrees = azimuth->any_number();
+    if (const auto elevation = value.member("elevation"))
+        scene.framing.elevation_degrees = elevation->number(-90, 90, "an angle from -90 to 90 degrees");
+    if (const auto zoom = value.member("zoom")) scene.framing.zoom = zoom->number(1e-6, 1e6, "a positive number");
+}
+
+Light read_light(const JsonValue& value) {
+    value.expect_members({"type", "space", "direction", "position", "range", "colour", "intensity"});
+    Light light;
+    light.kind =
+        choice(value.required("type"), std::array<std::pair<std::string_view, LightKind>, 2>{
+                                           {{"directional", LightKind::kDirectional}, {"point", LightKind::kPoint}}});
+    if (const auto space = value.member("space"))
+        light.space = choice(*space, std::array<std::pair<std::string_view, LightSpace>, 2>{
+                                         {{"world", LightSpace::kWorld}, {"camera", LightSpace::kCamera}}});
+    if (light.kind == LightKind::kDirectional) {
+        for (const char* name : {"position", "range"})
+            if (const auto extra = value.member(name)) extra->fail("nothing: the light is directional");
+        light.direction = direction(value.required("direction"));
+    } else {
+        if (const auto extra = value.member("direction")) extra->fail("nothing: the light is a point");
+        light.position = value.required("position").vector();
+        light.range = value.required("range").number(1 / kLargest, kLargest, "a positive number");
+    }
+    if (const auto colour = value.member("colour")) light.colour = linear_colour(*colour);
+    if (const auto intensity = value.member("intensity"))
+        light.colour *= intensity->number(0, kLargest, "a number that is not negative");
+    return light;
+}
+
+Lighting read_lighting(const JsonValue& value) {
+    value.expect_members({"ambient", "specular", "shininess", "lights"});
+    Lighting lighting = default_lighting();
+    if (const auto ambient = value.member("ambient")) lighting.ambient = linear_colour(*ambient);
+    if (const auto specular = value.member("specular"))
+        lighting.specular = specular->number(0, kLargest, "a number that is not negative");
+    if (const auto shininess = value.member("shininess"))
+        lighting.shininess = shininess->number(1, 1e6, "a number from 1 to 1000000");
+    if (const auto lights = value.member("lights")) {
+        lighting.lights.clear();
+        const std::size_t count = lights->array_size(0);
+        for (std::size_t i = 0; i < count; ++i)
+            lighting.lights.push_back(read_light(lights->element(i)));
+    }
+    return lighting;
+}
+
+Background read_background(const JsonValue& value) {
+    Background background;
+    const std::string text = value.is_string() ? value.string() : "";
+    background.transparent = text == "transparent";
+    if (background.transparent) return background;
+    const auto colour = parse_colour(text);
+    if (!colour) value.fail("a colour like \"#ff8000\", or \"transparent\"");
+    background.colour = *colour;
+    return background;
+}
+
+void read_render(const JsonValue& value, SceneDescription& scene) {
+    value.expect_members({"size", "view", "sides", "epsilon_scale", "prefilter"});
+    constexpr std::uint32_t kLargestSide = 1u << 16;
+    if (const auto size = value.member("size")) {
+        size->array_size(2, 2);
+        scene.width = size->element(0).whole_number(1, kLargestSide);
+        scene.height = size->element(1).whole_number(1, kLargestSide);
+    }
+    if (const auto view = value.member("view")) {
+        const auto known = view_of_name(view->is_string() ? view->string() : "");
+        if (!known) view->fail("the name of a view, such as \"shaded\"");
+        scene.view = *known;
+    }
+    if (const auto sides = value.member("sides"))
+        scene.sides = choice(
+            *sides,
+            std::array<std::pair<std::string_view, Sides>, 3>{
+                {{"as-baked", Sides::kAsBaked}, {"one-sided", Sides::kOneSided}, {"two-sided", Sides::kTwoSided}}});
+    if (const auto epsilon = value.member("epsilon_scale"))
+        scene.epsilon_scale = epsilon->number(0, 100, "a number from 0 to 100");
+    if (const auto prefilter = value.member("prefilter")) scene.prefilter = prefilter->boolean();
+}
+
+std::size_t line_of(std::string_view text, std::size_t byte) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
+    return 1 + static_cast<std::size_t>(std::count(text.begin(), end, '\n'));
+}
+
+}  // namespace
+
+std::optional<glm::dvec3> parse_colour(std::string_view text) {
+    static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 7> kNames{{{"white", 0xffffff},
+                                                                                       {"black", 0x000000},
+                                                                                       {"grey", 0x808080},
+                                                                                       {"red", 0xff0000},
+                                                                                       {"green", 0x00ff00},
+                                                                                       {"blue", 0x0000ff},
+                                                                                       {"sky", 0xb4d2f0}}};
+    const auto of_bits = [](std::uint32_t rgb) {
+        return glm::dvec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0;
+    };
+    for (const auto& [name, rgb] : kNames)
+        if (name == text) return of_bits(rgb);
+    if (text.empty() || text[0] != '#' || (text.size() != 4 && text.size() != 7)) return std::nullopt;
+    std::uint32_t rgb = 0;
+    for (const char c : text.substr(1)) {
+        if (std::isxdigit(static_cast<unsigned char>(c)) == 0) return std::nullopt;
+        const auto digit = static_cast<std::uint32_t>(std::isdigit(static_cast<unsigned char>(c))
+                                                          ? c - '0'
+                                                          : std::tolower(static_cast<unsigned char>(c)) - 'a' + 10);
+        rgb = rgb * 16 + digit;
+        if (text.size() == 4) rgb = rgb * 16 + digit;
+    }
+    return of_bits(rgb);
+}
+
+SceneDescription parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder) {
+    nlohmann::json json;
+    try {
+        json = nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        throw InputError(name, "line " + std::to_string(line_of(text, error.byte)), "not valid JSON");
+    } catch (const nlohmann::json::exception&) {
+        throw InputError(name, "", "not valid JSON: a number is out of range");
+    }
+    const JsonValue root(json, name);
+    root.expect_members({"models", "camera", "lighting", "background", "render"});
+    SceneDescription scene;
+    const JsonValue models = root.required("models");
+    const std::size_t count = models.array_size(1);
+    for (std::size_t i = 0; i < count; ++i)
+        scene.models.push_back(read_model(models.element(i), folder));
+    if (const auto camera = root.member("camera")) read_camera(*camera, scene);
+    if (const auto lighting = root.member("lighting")) scene.lighting = read_lighting(*lighting);
+    if (const auto background = root.member("background")) scene.background = read_background(*background);
+    if (const auto render = root.member("render")) read_render(*render, scene);
+    return scene;
+}
+
+SceneDescription read_scene_file(const std::filesystem::path& path) {
+    std::error_code status;
+    if (std::filesystem::is_directory(path, status))
+        throw SystemError("cannot read " + path.string() + ": is a directory");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw SystemError("cannot read " + path.string() + ": " + std::strerror(errno));
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    return parse_scene(text, path.string(), path.parent_path());
+}
+
+}  // namespace splice

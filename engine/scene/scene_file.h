@@ -1,0 +1,59 @@
+// Scene files (docs/scene_format.md): JSON -> plain description. Only parsing and checking; models are loaded
+// elsewhere.
+#pragma once
+
+#include "engine/scene/camera.h"
+#include "engine/scene/draw_list.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/view.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace splice {
+
+/// A procedural model: "kind" and its numbers, checked against what the kind takes.
+struct ShapeDescription {
+    std::string kind;
+    std::map<std::string, double> parameters;  // those that the file gives
+};
+
+enum class SceneRepresentation { kHybrid, kTriangles, kSurfels };
+
+struct SceneModel {
+    std::variant<std::filesystem::path, ShapeDescription> source;  // paths are resolved against the scene file's folder
+    Transform transform;
+    bool unit_box = false;  // first moved and scaled so that its bounding box is centred and its longest side is 1
+    SceneRepresentation representation = SceneRepresentation::kHybrid;  // of meshes and shapes, baked on loading
+    std::optional<double> triangle_share;                               // the same
+};
+
+struct SceneDescription {
+    std::vector<SceneModel> models;  // at least one
+    std::optional<Camera> camera;    // eye and target given; clip planes are not set
+    Framing framing;                 // else how to frame the models
+    Lighting lighting = default_lighting();
+    Background background;
+    std::uint32_t width = 512, height = 512;
+    View view = View::kShaded;
+    Sides sides = Sides::kAsBaked;
+    double epsilon_scale = 1;
+    bool prefilter = true;
+};
+
+/// Throws InputError("FILE: /path/of/value: expected ..., got ..."), SystemError.
+SceneDescription read_scene_file(const std::filesystem::path& path);
+
+/// The same from text; `name` is for messages, `folder` is where relative paths start.
+SceneDescription parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder);
+
+/// "#rgb", "#rrggbb", or a name out of white, black, grey, red, green, blue, sky: sRGB-encoded, 0..1.
+std::optional<glm::dvec3> parse_colour(std::string_view text);
+
+}  // namespace splice

@@ -17,10 +17,11 @@ enum class ForcedRepresentation { kHybrid, kTriangles, kSurfels };
 struct ClusterOptions {
     Selection selection = Selection::kGeometric;
     ForcedRepresentation representation = ForcedRepresentation::kHybrid;
-    std::optional<double> triangle_share;   // 0..1: share of the input's triangles kept as triangles; overrides the criterion
-    std::optional<double> phase1_cost;      // merge while cost <= this; larger merges more (the thesis prints the negative)
+    std::optional<double>
+        triangle_share;  // 0..1: share of the input's triangles kept as triangles; overrides the criterion
+    std::optional<double> phase1_cost;  // merge while cost <= this; larger merges more (the thesis prints the negative)
     std::optional<double> phase2_cost;
-    std::optional<double> max_patch_area;   // share of the surface's area, 0..1
+    std::optional<double> max_patch_area;  // share of the surface's area, 0..1
 };
 
 /// Deterministic; the result does not depend on the number of threads.

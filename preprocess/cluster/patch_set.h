@@ -1,5 +1,5 @@
-// The result of clustering: every triangle in exactly one connected patch, the patches' representations, and the tree of
-// merges that made them.
+// The result of clustering: every triangle in exactly one connected patch, the patches' representations, and the tree
+// of merges that made them.
 #pragma once
 
 #include "preprocess/mesh/indexed_mesh.h"
@@ -13,25 +13,26 @@ namespace splice {
 struct ClusterPatch {
     format::Representation representation = format::Representation::kTriangles;
     std::uint32_t material = 0;
-    float area = 0;             // unit-box units^2
+    float area = 0;                      // unit-box units^2
     Vec3f mean_normal = Vec3f::UnitZ();  // area weighted, unit
-    float roughness = 0;        // area-weighted RMS angle of face normals to mean_normal, radians
-    std::uint32_t merge_root = 0;   // node id in merge_tree, see format::MergeNode; leaf ids are IndexedMesh triangles
+    float roughness = 0;                 // area-weighted RMS angle of face normals to mean_normal, radians
+    std::uint32_t merge_root = 0;  // node id in merge_tree, see format::MergeNode; leaf ids are IndexedMesh triangles
 };
 
 struct ClusterStats {
     std::uint64_t triangle_patches = 0, surfel_patches = 0;
     std::uint64_t triangles_in_triangle_patches = 0;
-    double selection_auc = 0;   // ALGORITHMS section 1: P(point of a surfel patch is rougher than one of a triangle patch); 0.5 when one kind is missing
+    double selection_auc = 0;  // ALGORITHMS section 1: P(point of a surfel patch is rougher than one of a triangle
+                               // patch); 0.5 when one kind is missing
     double seconds_phase1 = 0, seconds_phase2 = 0, seconds_selection = 0;
 };
 
 struct PatchSet {
     std::vector<ClusterPatch> patches;
-    std::vector<std::uint32_t> patch_begin;     // size patches + 1, into patch_triangles
-    std::vector<std::uint32_t> patch_triangles; // triangles grouped by patch, ascending inside a patch
-    std::vector<std::uint32_t> triangle_patch;  // one a triangle
-    std::vector<format::MergeNode> merge_tree;  // leaf ids are IndexedMesh triangles here; build_model renumbers
+    std::vector<std::uint32_t> patch_begin;      // size patches + 1, into patch_triangles
+    std::vector<std::uint32_t> patch_triangles;  // triangles grouped by patch, ascending inside a patch
+    std::vector<std::uint32_t> triangle_patch;   // one a triangle
+    std::vector<format::MergeNode> merge_tree;   // leaf ids are IndexedMesh triangles here; build_model renumbers
     ClusterStats stats;
 };
 

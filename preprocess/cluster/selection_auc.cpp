@@ -1,0 +1,142 @@
+#include "preprocess/cluster/selection_auc.h"
+
+#include "preprocess/cluster/roughness.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace splice {
+namespace {
+
+constexpr std::size_t kPoints = 100'000;
+constexpr std::size_t kEvery = 5;  // each fifth point is compared
+constexpr std::size_t kSide = 51;  // blocks of one radius across the unit box, one to spare
+
+struct Point {
+    Vec3f position;
+    std::uint32_t slot;
+};
+
+/// Points at equal steps of area along the face order, each placed in its face by the R2 sequence (Roberts 2018).
+std::vector<Point> spread_points(const IndexedMesh& mesh, const FaceGraph& faces) {
+    double total = 0;
+    for (const float a : faces.area)
+        total += static_cast<double>(a);
+    const double step = total / static_cast<double>(kPoints);
+    std::vector<Point> points;
+    points.reserve(kPoints);
+    double passed = 0;
+    for (std::size_t s = 0; s < faces.size(); ++s) {
+        passed += static_cast<double>(faces.area[s]);
+        while (points.size() < kPoints && (static_cast<double>(points.size()) + 0.5) * step < passed) {
+            const auto i = static_cast<double>(points.size());
+            double u = std::fmod(0.5 + i * 0.7548776662466927, 1.0), v = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
+            if (u + v > 1) u = 1 - u, v = 1 - v;
+            const auto [a, b, c] = faces.corners(mesh, s);
+            points.push_back(
+                {a + static_cast<float>(u) * (b - a) + static_cast<float>(v) * (c - a), static_cast<std::uint32_t>(s)});
+        }
+    }
+    return points;
+}
+
+/// Points bucketed in blocks of one radius, x fastest.
+struct PointGrid {
+    std::vector<std::uint32_t> begin;
+    std::vector<std::uint32_t> order;
+
+    static std::size_t block(float x) {
+        return static_cast<std::size_t>(std::clamp((x + 0.5f) / kRoughnessRadius, 0.0f, kSide - 1.0f));
+    }
+    static std::size_t index(std::size_t x, std::size_t y, std::size_t z) { return (z * kSide + y) * kSide + x; }
+
+    explicit PointGrid(const std::vector<Point>& points) : begin(kSide * kSide * kSide + 1, 0), order(points.size()) {
+        const auto block_of = [](const Vec3f& p) { return index(block(p.x()), block(p.y()), block(p.z())); };
+        for (const Point& p : points)
+            ++begin[block_of(p.position) + 1];
+        for (std::size_t b = 1; b < begin.size(); ++b)
+            begin[b] += begin[b - 1];
+        std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            order[next[block_of(points[i].position)]++] = i;
+    }
+
+    template <class Visit>
+    void for_each_near(const Vec3f& p, const Visit& visit) const {
+        const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
+        const auto high = [](std::size_t i) { return std::min(i + 1, kSide - 1); };
+        const std::size_t x = block(p.x()), y = block(p.y()), z = block(p.z());
+        for (std::size_t bz = low(z); bz <= high(z); ++bz) {
+            for (std::size_t by = low(y); by <= high(y); ++by) {
+                for (std::uint32_t i = begin[index(low(x), by, bz)]; i < begin[index(high(x), by, bz) + 1]; ++i) {
+                    visit(order[i]);
+                }
+            }
+        }
+    }
+};
+
+float roughness_at(const Vec3f& centre, const FaceGraph& faces, const std::vector<Point>& points, const PointGrid& grid,
+                   std::vector<Vec3f>& normals) {
+    normals.clear();
+    grid.for_each_near(centre, [&](std::uint32_t i) {
+        if ((points[i].position - centre).squaredNorm() <= kRoughnessRadius * kRoughnessRadius) {
+            normals.push_back(faces.normal[points[i].slot]);
+        }
+    });
+    Vec3f mean = Vec3f::Zero();
+    for (const Vec3f& n : normals)
+        mean += n;
+    mean.normalize();
+    double sum = 0;
+    for (const Vec3f& n : normals) {
+        const auto angle = static_cast<double>(angle_between(n, mean));
+        sum += angle * angle;
+    }
+    return static_cast<float>(std::sqrt(sum / static_cast<double>(normals.size())));
+}
+
+struct Compared {
+    float roughness;
+    bool surfel;
+};
+
+/// The area under the receiver operating characteristic, by the rank sum.
+double area_under_curve(std::vector<Compared> compared) {
+    std::sort(compared.begin(), compared.end(),
+              [](const Compared& a, const Compared& b) { return a.roughness < b.roughness; });
+    double triangles_below = 0, surfels = 0, won = 0;
+    for (auto first = compared.begin(); first != compared.end();) {
+        const auto last =
+            std::find_if(first, compared.end(), [&](const Compared& c) { return c.roughness != first->roughness; });
+        const auto tied_surfels =
+            static_cast<double>(std::count_if(first, last, [](const Compared& c) { return c.surfel; }));
+        const auto tied_triangles = static_cast<double>(last - first) - tied_surfels;
+        won += tied_surfels * (triangles_below + tied_triangles / 2);
+        triangles_below += tied_triangles;
+        surfels += tied_surfels;
+        first = last;
+    }
+    return triangles_below * surfels > 0 ? won / (triangles_below * surfels) : 0.5;
+}
+
+}  // namespace
+
+double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces,
+                             const std::vector<std::uint8_t>& surfel_slot) {
+    const std::vector<Point> points = spread_points(mesh, faces);
+    const PointGrid grid(points);
+    std::vector<Compared> compared((points.size() + kEvery - 1) / kEvery);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, compared.size()), [&](const auto& range) {
+        std::vector<Vec3f> normals;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const Point& p = points[i * kEvery];
+            compared[i] = {roughness_at(p.position, faces, points, grid, normals), surfel_slot[p.slot] != 0};
+        }
+    });
+    return area_under_curve(std::move(compared));
+}
+
+}  // namespace splice

@@ -19,9 +19,10 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Runs a stage and adds the time it took to `seconds`.
+/// Announces a stage, runs it and adds the time it took to `seconds`.
 template <typename Stage>
-auto timed(double& seconds, const Stage& stage) {
+auto timed(const Progress& progress, std::string_view name, double& seconds, const Stage& stage) {
+    if (progress) progress(name, 0);
     const Stopwatch watch;
     auto result = stage();
     seconds += watch.seconds();
@@ -44,12 +45,12 @@ Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats
     stats.vertices = mesh.positions.size();
     stats.triangles = mesh.triangles.size();
 
-    const PatchSet patches =
-        timed(stats.seconds_cluster, [&] { return cluster_mesh(mesh, options.cluster, progress); });
+    const PatchSet patches = timed(progress, "cluster", stats.seconds_cluster,
+                                   [&] { return cluster_mesh(mesh, options.cluster, progress); });
     stats.cluster = patches.stats;
 
     RenderVertices vertices;
-    const PatchLods lods = timed(stats.seconds_simplify, [&] {
+    const PatchLods lods = timed(progress, "simplify", stats.seconds_simplify, [&] {
         vertices = build_render_vertices(mesh);
         return simplify_patches(mesh, vertices, patches, options.simplify, progress);
     });
@@ -59,7 +60,8 @@ Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats
     stats.seconds_sample = surfels.stats.seconds_sample;
     stats.seconds_prune = surfels.stats.seconds_prune;
 
-    Model model = timed(stats.seconds_assemble, [&] { return assemble_model(mesh, patches, vertices, lods, surfels); });
+    Model model = timed(progress, "assemble", stats.seconds_assemble,
+                        [&] { return assemble_model(mesh, patches, vertices, lods, surfels); });
     stats.seconds_total += total.seconds();
     return model;
 }
@@ -68,11 +70,9 @@ Model bake_file(const std::filesystem::path& path, const BakeOptions& options, B
                 const Progress& progress) {
     const auto limit = limit_threads(options.threads);
     const Stopwatch preparation;
-    if (progress) progress("read", 0);
-    SourceMesh source = timed(stats.seconds_read, [&] { return read_mesh_file(path); });
+    SourceMesh source = timed(progress, "read", stats.seconds_read, [&] { return read_mesh_file(path); });
     stats.warnings = source.warnings;
-    if (progress) progress("repair", 0);
-    IndexedMesh mesh = timed(stats.seconds_repair, [&] {
+    IndexedMesh mesh = timed(progress, "repair", stats.seconds_repair, [&] {
         return repair_mesh(std::move(source), options.repair, stats.repair, path.string());
     });
     stats.seconds_total += preparation.seconds();

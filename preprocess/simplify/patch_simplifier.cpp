@@ -21,6 +21,12 @@ constexpr double kLengthShare = 1e-6;
 constexpr double kColourShare = 0.25;
 constexpr double kNormalShare = 0.01;
 
+// Snapshots are taken each time this share of the triangles is left; levels are chosen among them.
+constexpr double kLadderStep = 0.8;
+
+// A level with more than this share of the triangles of the one before is not worth its bytes.
+constexpr double kLeastReduction = 0.9;
+
 double squared_colour_distance(std::uint32_t a, std::uint32_t b) {
     double sum = 0;
     for (unsigned shift = 0; shift < 32; shift += 8) {
@@ -46,20 +52,48 @@ PatchSimplifier::PatchSimplifier(const IndexedMesh& mesh, const RenderVertices& 
 
 PatchSimplifier::CoarserLevels PatchSimplifier::simplify(std::span<const std::uint32_t> triangles,
                                                          const SimplifyOptions& options) {
-    CoarserLevels result;
     load(triangles);
-    std::size_t previous = triangles.size();
-    double target = static_cast<double>(triangles.size());
-    for (std::uint32_t level = 1; level < options.levels; ++level) {
-        target *= static_cast<double>(options.reduction);
-        collapse_until(static_cast<std::size_t>(std::ceil(target)));
-        if (static_cast<double>(alive_count_) > 0.9 * static_cast<double>(previous)) break;
-        previous = alive_count_;
-        append_level(result);
+    const auto finest = static_cast<double>(triangles.size());
+    const auto coarser_levels = static_cast<double>(options.levels - 1);
+    const double floor = finest * std::pow(static_cast<double>(options.reduction), coarser_levels);
+    CoarserLevels ladder;
+    for (double rung = finest * kLadderStep; options.levels > 1; rung *= kLadderStep) {
+        const std::size_t before = alive_count_;
+        collapse_until(static_cast<std::size_t>(std::ceil(std::max(rung, floor))));
+        if (alive_count_ != before) append_level(ladder);
+        if (heap_.empty() || rung <= floor) break;
     }
     for (const Index position : mesh_position_)
         local_of_position_[position] = kNone;
-    return result;
+    return choose_levels(ladder, triangles.size(), options);
+}
+
+// Locked borders often stop a small patch long before reduction^levels is reached. What can be reached is then divided
+// evenly among fewer levels, at least two coarser ones.
+PatchSimplifier::CoarserLevels PatchSimplifier::choose_levels(const CoarserLevels& ladder, std::size_t finest,
+                                                              const SimplifyOptions& options) const {
+    CoarserLevels chosen;
+    if (ladder.levels.empty()) return chosen;
+    const double log_finest = std::log(static_cast<double>(3 * finest));
+    const auto log_size = [](const PatchLods::Level& level) {
+        return std::log(static_cast<double>(level.index_count));
+    };
+    const double reach = log_size(ladder.levels.back()) - log_finest;
+    const double wanted = std::ceil(reach / std::log(static_cast<double>(options.reduction)) - 1e-6);
+    const double count = std::clamp(wanted, std::min(2.0, options.levels - 1.0), options.levels - 1.0);
+    double previous = log_finest;
+    for (double i = 1; i <= count; ++i) {
+        const double target = log_finest + reach * i / count;
+        const PatchLods::Level& level = *std::ranges::min_element(
+            ladder.levels, {},
+            [&](const PatchLods::Level& candidate) { return std::abs(log_size(candidate) - target); });
+        if (log_size(level) > previous + std::log(kLeastReduction)) continue;
+        previous = log_size(level);
+        const auto indices = std::span(ladder.indices).subspan(level.first_index, level.index_count);
+        chosen.levels.push_back({chosen.indices.size(), level.index_count, level.error});
+        chosen.indices.insert(chosen.indices.end(), indices.begin(), indices.end());
+    }
+    return chosen;
 }
 
 void PatchSimplifier::load(std::span<const std::uint32_t> triangles) {

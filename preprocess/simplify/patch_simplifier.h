@@ -58,6 +58,7 @@ class PatchSimplifier {
     bool turns_no_triangle(Index vertex, Index target) const;
     void collapse(Index vertex, Index target);
     void drop_dead_corners(Index vertex);
+    CoarserLevels choose_levels(const CoarserLevels& ladder, std::size_t finest, const SimplifyOptions& options) const;
     void append_level(CoarserLevels& result) const;
 
     Index next_in_triangle(Index corner) const { return corner % 3 == 2 ? corner - 2 : corner + 1; }

@@ -19,12 +19,16 @@ struct RenderVertices {
 RenderVertices build_render_vertices(const IndexedMesh& mesh);
 
 struct SimplifyOptions {
-    std::uint32_t levels = 4;       // the finest included; a level that removes under 10 % ends a patch's list
-    float reduction = 0.25f;        // triangles of a level / triangles of the one before
+    std::uint32_t levels = 4;       // at most, the finest included; at least 1
+    float reduction = 0.25f;        // least triangles of a level / triangles of the one before, in (0, 1). A patch whose
+                                    // borders stop it earlier divides what it can reach among fewer levels; a level
+                                    // that would remove under 10 % is left out
 };
 
 struct PatchLods {
-    struct Level { std::uint64_t first_index; std::uint32_t index_count; float error; };  // as format::Lod
+    /// As format::Lod. `error`: the largest, over the collapses made, of the RMS distance (area weighted, unit-box units)
+    /// between the vertex that was kept and the planes of the finest triangles it stands for.
+    struct Level { std::uint64_t first_index; std::uint32_t index_count; float error; };
     std::vector<std::uint32_t> indices;     // into RenderVertices::vertices; the finest level of all patches first, patch by patch, in PatchSet order
     std::vector<Level> levels;              // grouped by patch
     std::vector<std::uint32_t> patch_begin; // size patches + 1, into levels

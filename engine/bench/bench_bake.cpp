@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::array kStages{"read", "repair", "cluster", "simplify", "sample", "prune", "write", "total"};
+constexpr std::array kStages{"read", "repair", "cluster", "simplify", "sample", "prune", "assemble", "write", "total"};
 
 class ScratchFolder {
   public:
@@ -106,7 +106,7 @@ json bench_bake(const std::vector<BenchModel>& models, const BakeBenchOptions& o
             row.push_back(fmt::format("{:.3f}", value));
         }
         const json& last = runs.back();
-        const auto in = last.at("/input/triangles"_json_pointer).get<double>();
+        const auto in = last.at("/repair/triangles"_json_pointer).get<double>();
         const auto kept = last.at("/output/triangles"_json_pointer).get<double>();
         const auto surfels = last.at("/output/surfels"_json_pointer).get<double>();
         const double memory = median_of(runs, "/peak_rss_bytes"_json_pointer);

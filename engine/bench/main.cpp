@@ -1,6 +1,7 @@
 // splice-bench: measures the bake, the frames and their truth. Not a test: figures depend on the machine.
 #include "engine/bench/bench_bake.h"
 #include "engine/bench/bench_quality.h"
+#include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
 
@@ -9,7 +10,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <map>
 
 namespace {
@@ -108,12 +108,7 @@ int run(int argc, char** argv) {
         .add_option("--representation", holes_line.quality.bake.cluster.representation, "hybrid, triangles or surfels")
         ->transform(CLI::CheckedTransformer(representations).description(""));
 
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help
-        throw UsageError(error.what());
-    }
+    if (!parse_command_line(app, argc, argv)) return 0;
 
     nlohmann::json report;
     fs::path report_file;
@@ -132,20 +127,12 @@ int run(int argc, char** argv) {
                                   : bench::bench_holes(models, chosen.quality);
         clean = report.value("clean", true);
     }
-    if (!report_file.empty()) write_text_file(report_file, report.dump(2) + "\n");
-    return clean ? 0 : 1;
+    if (!report_file.empty()) write_text_file(report_file, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    return clean ? 0 : kExitFailure;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const splice::UsageError& error) {
-        std::fprintf(stderr, "splice-bench: %s\n", error.what());
-        return 2;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "splice-bench: %s\n", error.what());
-        return 1;
-    }
+    return splice::run_program("splice-bench", [&] { return run(argc, argv); });
 }

@@ -1,9 +1,9 @@
 #include "engine/capture/png_file.h"
 
+#include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
 
 #include <png.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -41,31 +41,27 @@ bool is_opaque(const Picture& picture) {
     return true;
 }
 
-}  // namespace
-
-void write_png(const std::filesystem::path& path, const Picture& picture) {
-    const std::filesystem::path beside = path.string() + ".part" + std::to_string(getpid());
-    const auto fail = [&](const std::string& reason) {
-        std::error_code ignored;
-        std::filesystem::remove(beside, ignored);
-        throw SystemError("cannot write " + path.string() + ": " + reason);
-    };
+std::vector<std::byte> encode_png(const Picture& picture) {
     PngImage png;
     png.image.width = picture.width;
     png.image.height = picture.height;
     const bool opaque = is_opaque(picture);
     png.image.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
     const std::vector<std::uint8_t> packed = opaque ? without_alpha(picture) : picture.rgba;
-    {
-        const File file(std::fopen(beside.c_str(), "wb"), &std::fclose);
-        if (!file) fail(std::strerror(errno));
-        if (png_image_write_to_stdio(&png.image, file.get(), 0, packed.data(), 0, nullptr) == 0)
-            fail(png.image.message);
-        if (std::fflush(file.get()) != 0 || fsync(fileno(file.get())) != 0) fail(std::strerror(errno));
-    }
-    std::error_code error;
-    std::filesystem::rename(beside, path, error);
-    if (error) fail(error.message());
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
+    std::vector<std::byte> bytes(size);
+    if (png_image_write_to_memory(&png.image, bytes.data(), &size, 0, packed.data(), 0, nullptr) == 0)
+        throw SystemError(std::string("cannot encode a PNG: ") + png.image.message);
+    bytes.resize(size);
+    return bytes;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const Picture& picture) {
+    AtomicFile file(path);
+    file.write(encode_png(picture));
+    file.commit();
 }
 
 Picture read_png(const std::filesystem::path& path) {

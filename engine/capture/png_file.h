@@ -13,8 +13,8 @@ struct Picture {
     std::vector<std::uint8_t> rgba;  // sRGB-encoded, rows top to bottom, alpha not premultiplied
 };
 
-/// Alpha is stored only where it is not 255 throughout. Written beside and renamed, so that `path` is either the whole
-/// picture or untouched. Throws SystemError.
+/// Alpha is stored only where it is not 255 throughout. `path` becomes the whole picture or stays as it is. Throws
+/// SystemError.
 void write_png(const std::filesystem::path& path, const Picture& picture);
 
 /// Throws InputError, SystemError.

@@ -1,0 +1,204 @@
+#include "engine/capture/capture_command_line.h"
+
+#include "preprocess/build_model/program_main.h"
+#include "preprocess/model_format/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+
+namespace splice {
+
+namespace {
+
+constexpr const char* kAbout = R"(splice-capture - a picture of a hybrid model, without a window
+
+INPUT is a model file (splice-bake), a scene file (JSON, docs/scene_format.md) or a mesh (OBJ, PLY, STL, OFF, SMF), which
+is baked in memory first. Coordinates are those of the file. By default the model is framed as large as it fits.)";
+
+constexpr const char* kExamples = R"(Examples:
+  splice-capture bunny.splice -o bunny.png
+  splice-capture dragon.ply -o dragon.png --size 1024x768 --azimuth 120 --elevation 10 --zoom 1.5
+  splice-capture cow.splice -o cow.png --eye 0,0.2,2 --target 0,0,0 --fov 30 --background transparent
+  splice-capture bunny.splice -o overlap.png --view overlap --stats overlap.json
+  splice-capture part.splice -o turn.png --orbit 36        writes turn-000.png ... turn-035.png
+
+Exit status: 0 done; 1 the input, the device or the disk failed; 2 wrong usage.)";
+
+double parse_number(const std::string& text, const std::string& option, const std::string& expected) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        throw UsageError(option + ": expected " + expected + ", got \"" + text + "\"");
+    return value;
+}
+
+glm::dvec3 parse_vector(const std::string& text, const std::string& option) {
+    const std::string expected = "three numbers like 0,1.5,-2";
+    glm::dvec3 vector;
+    std::size_t start = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t comma = text.find(',', start);
+        if ((axis < 2) != (comma != std::string::npos))
+            throw UsageError(option + ": expected " + expected + ", got \"" + text + "\"");
+        vector[axis] = parse_number(text.substr(start, axis < 2 ? comma - start : std::string::npos), option, expected);
+        start = comma + 1;
+    }
+    return vector;
+}
+
+std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
+    const auto fail = [&]() -> std::uint32_t {
+        throw UsageError("--size: expected WIDTHxHEIGHT in pixels like 512x512, got \"" + text + "\"");
+    };
+    const std::size_t cross = text.find('x');
+    if (cross == std::string::npos) fail();
+    const auto side = [&](std::string_view digits) {
+        std::uint32_t value = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        return error == std::errc() && end == digits.data() + digits.size() && value > 0 ? value : fail();
+    };
+    return {side(std::string_view(text).substr(0, cross)), side(std::string_view(text).substr(cross + 1))};
+}
+
+double parse_in_range(const std::string& text, const std::string& option, double least, double most,
+                      const std::string& unit) {
+    std::ostringstream expected;
+    expected << "a number from " << least << " to " << most << unit;
+    const double value = parse_number(text, option, expected.str());
+    if (value < least || value > most)
+        throw UsageError(option + ": expected " + expected.str() + ", got \"" + text + "\"");
+    return value;
+}
+
+View parse_view(const std::string& text) {
+    if (const auto view = view_of_name(text)) return *view;
+    std::string list;
+    for (const ViewName& known : kViewNames)
+        list += (list.empty() ? "" : ", ") + std::string(known.name);
+    throw UsageError("--view: expected one of " + list + ", got \"" + text + "\"");
+}
+
+Background parse_background(const std::string& text) {
+    Background background;
+    background.transparent = text == "transparent";
+    if (background.transparent) return background;
+    const auto colour = parse_colour(text);
+    if (!colour)
+        throw UsageError(
+            "--background: expected transparent, a colour like #ff8000 or one of white, black, grey, red, "
+            "green, blue, sky, got \"" +
+            text + "\"");
+    background.colour = *colour;
+    return background;
+}
+
+bool parse_switch(const std::string& text, const std::string& option) {
+    if (text == "on" || text == "off") return text == "on";
+    throw UsageError(option + ": expected on or off, got \"" + text + "\"");
+}
+
+std::string view_help() {
+    std::string help = "What to show (default shaded):";
+    for (const ViewName& known : kViewNames)
+        help += "\n  " + std::string(known.name) + " - " + std::string(known.description);
+    return help;
+}
+
+// Options as typed; converted once the parser is done, so that every complaint has the same shape.
+struct RawOptions {
+    std::string input, output, stats, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, background,
+        epsilon_scale, prefilter;
+    bool one_sided = false, two_sided = false;
+};
+
+void convert(const RawOptions& raw, CaptureCommand& command) {
+    if (!raw.size.empty()) command.size = parse_size(raw.size);
+    if (!raw.eye.empty()) command.eye = parse_vector(raw.eye, "--eye");
+    if (!raw.target.empty()) command.target = parse_vector(raw.target, "--target");
+    if (!raw.up.empty()) command.up = parse_vector(raw.up, "--up");
+    if (!raw.fov.empty()) command.fov_degrees = parse_in_range(raw.fov, "--fov", 1, 170, " degrees");
+    if (!raw.azimuth.empty()) command.azimuth_degrees = parse_number(raw.azimuth, "--azimuth", "an angle in degrees");
+    if (!raw.elevation.empty())
+        command.elevation_degrees = parse_in_range(raw.elevation, "--elevation", -90, 90, " degrees");
+    if (!raw.zoom.empty()) command.zoom = parse_in_range(raw.zoom, "--zoom", 1e-6, 1e6, "");
+    if (!raw.orbit.empty()) {
+        const double frames = parse_in_range(raw.orbit, "--orbit", 1, 100000, " frames");
+        if (frames != std::floor(frames))
+            throw UsageError("--orbit: expected a whole number of frames, got \"" + raw.orbit + "\"");
+        command.orbit = static_cast<std::uint32_t>(frames);
+    }
+    if (!raw.view.empty()) command.view = parse_view(raw.view);
+    if (!raw.background.empty()) command.background = parse_background(raw.background);
+    if (!raw.epsilon_scale.empty())
+        command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
+    if (!raw.prefilter.empty()) command.prefilter = parse_switch(raw.prefilter, "--prefilter");
+    if (!raw.stats.empty()) command.stats = raw.stats;
+    if (raw.one_sided && raw.two_sided) throw UsageError("--one-sided and --two-sided exclude each other");
+    if (raw.one_sided) command.sides = Sides::kOneSided;
+    if (raw.two_sided) command.sides = Sides::kTwoSided;
+    command.input = raw.input;
+    command.output = raw.output;
+}
+
+void check_combination(const CaptureCommand& command) {
+    if (command.list_devices) return;
+    if (command.input.empty()) throw UsageError("INPUT is missing (see --help)");
+    if (command.output.empty()) throw UsageError("-o OUT.png is missing (see --help)");
+    if (command.eye.has_value() != command.target.has_value())
+        throw UsageError("--eye and --target are given together or not at all");
+    if (command.up && !command.eye) throw UsageError("--up needs --eye and --target");
+    if (command.eye && (command.azimuth_degrees || command.elevation_degrees || command.zoom))
+        throw UsageError("--eye and --target exclude --azimuth, --elevation and --zoom");
+}
+
+}  // namespace
+
+std::optional<CaptureCommand> parse_capture_command(int argc, const char* const* argv) {
+    CaptureCommand command;
+    RawOptions raw;
+    CLI::App app(kAbout, "splice-capture");
+    app.footer(kExamples);
+    app.set_version_flag("--version", "splice-capture " SPLICE_VERSION);
+    app.add_option("INPUT", raw.input, "MODEL.splice, SCENE.json or a mesh");
+    app.add_option("-o,--output", raw.output, "The picture, PNG");
+    app.add_option("--device", command.renderer.device,
+                   "auto: a GPU if there is one, else lavapipe; cpu; or a number of --list-devices")
+        ->option_text("auto|cpu|INDEX");
+    app.add_flag("--list-devices", command.list_devices, "Print the Vulkan devices and exit");
+    app.add_option("--size", raw.size, "Pixels, default 512x512")->option_text("WxH");
+    app.add_option("--eye", raw.eye, "Where the eye is, in the file's units")->option_text("X,Y,Z");
+    app.add_option("--target", raw.target, "What it looks at")->option_text("X,Y,Z");
+    app.add_option("--up", raw.up, "Which way is up, default 0,1,0")->option_text("X,Y,Z");
+    app.add_option("--fov", raw.fov, "Full vertical field of view in degrees, 1 to 170, default 40")
+        ->option_text("DEGREES");
+    app.add_option("--azimuth", raw.azimuth, "Frames the model from this side: 0 front (+z), 90 right (+x); default 30")
+        ->option_text("DEGREES");
+    app.add_option("--elevation", raw.elevation, "The same from above, -90 to 90, default 20")->option_text("DEGREES");
+    app.add_option("--zoom", raw.zoom, "2 shows everything twice as large, default 1")->option_text("FACTOR");
+    app.add_flag("--orthographic", command.orthographic, "Parallel rays");
+    app.add_option("--orbit", raw.orbit, "N pictures around the model: OUT-000.png and so on")->option_text("N");
+    app.add_option("--view", raw.view, view_help())->option_text("VIEW");
+    app.add_option("--background", raw.background, "#rrggbb, a name (white, black, grey, sky ...) or transparent")
+        ->option_text("COLOUR");
+    app.add_flag("--two-sided", raw.two_sided, "Show surfaces from behind, too");
+    app.add_flag("--one-sided", raw.one_sided, "Leave out what faces away; default: as baked");
+    app.add_option("--epsilon-scale", raw.epsilon_scale,
+                   "Factor on the depth by which surfels blend, 0 to 100, default 1; thesis: 0.75 to 1.5")
+        ->option_text("FACTOR");
+    app.add_option("--prefilter", raw.prefilter, "EWA's screen-space low-pass filter, default on")
+        ->option_text("on|off");
+    app.add_option("--stats", raw.stats,
+                   "Write times and counts as JSON; the frame is rendered twice, the second timed")
+        ->option_text("FILE");
+    app.add_flag("--validate", command.renderer.validate,
+                 "Run with the Vulkan validation layers; any message fails the run");
+    app.add_flag("--quiet", command.quiet, "Print nothing but errors");
+    if (!parse_command_line(app, argc, argv)) return std::nullopt;
+    convert(raw, command);
+    check_combination(command);
+    return command;
+}
+
+}  // namespace splice

@@ -1,0 +1,36 @@
+// splice-capture's options.
+#pragma once
+
+#include "engine/capture/capture.h"
+#include "engine/scene/scene_file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace splice {
+
+/// What the command line says; what it leaves open is the scene's or the default.
+struct CaptureCommand {
+    bool list_devices = false;
+    std::filesystem::path input, output;
+    RendererOptions renderer;
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  // pixels
+    std::optional<glm::dvec3> eye, target, up;                    // world units
+    std::optional<double> fov_degrees, azimuth_degrees, elevation_degrees, zoom;
+    bool orthographic = false;
+    std::uint32_t orbit = 0;  // frames, 0: a single picture
+    std::optional<View> view;
+    std::optional<Background> background;
+    std::optional<Sides> sides;
+    std::optional<double> epsilon_scale;
+    std::optional<bool> prefilter;
+    std::optional<std::filesystem::path> stats;
+    bool quiet = false;
+};
+
+/// Nothing when --help or --version was asked for and printed. Throws UsageError.
+std::optional<CaptureCommand> parse_capture_command(int argc, const char* const* argv);
+
+}  // namespace splice

@@ -1,0 +1,38 @@
+#include "engine/capture/stats_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace splice {
+
+namespace {
+
+nlohmann::ordered_json json_of(const FrameStats& stats) {
+    nlohmann::ordered_json json;
+    json["device"] = stats.device;
+    json["frame_ms"] = stats.frame_ms;
+    json["passes"] = nlohmann::ordered_json::array();
+    for (const PassTime& pass : stats.passes)
+        json["passes"].push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}});
+    json["surfels_drawn"] = stats.surfels_drawn;
+    json["triangles_drawn"] = stats.triangles_drawn;
+    json["covered_pixels"] = stats.covered_pixels;
+    json["overlap_mean"] = stats.overlap_mean;
+    return json;
+}
+
+}  // namespace
+
+std::string stats_json(const std::vector<CapturedFile>& files) {
+    nlohmann::ordered_json json = json_of(files.back().stats);
+    if (files.size() > 1) {
+        json["frames"] = nlohmann::ordered_json::array();
+        for (const CapturedFile& file : files) {
+            nlohmann::ordered_json frame = json_of(file.stats);
+            frame["file"] = file.path;
+            json["frames"].push_back(std::move(frame));
+        }
+    }
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace splice

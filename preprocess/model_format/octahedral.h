@@ -1,5 +1,5 @@
 // Unit vectors in 32 bits: the octahedral map (Meyer et al. 2010, "On floating-point normal vectors"), two 16-bit snorm.
-// Angular error below 0.003 degrees. shaders/glsl/include/octahedral.glsl decodes the same bits.
+// Angular error below 0.004 degrees. shaders/glsl/include/octahedral.glsl decodes the same bits.
 #pragma once
 
 #include <algorithm>

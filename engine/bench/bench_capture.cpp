@@ -2,7 +2,6 @@
 #include "engine/bench/bench_view.h"
 #include "engine/bench/table.h"
 #include "tests/reference/comparison.h"
-#include "tests/reference/png.h"
 
 #include <fmt/format.h>
 
@@ -53,11 +52,11 @@ double mean(const std::vector<double>& values) {
 void save_pictures(const fs::path& folder, const std::string& stem, const ColourImage& hybrid,
                    const ColourImage& triangles, const ColourImage& truth) {
     fs::create_directories(folder);
-    write_png(folder / (stem + "-hybrid.png"), hybrid);
-    write_png(folder / (stem + "-triangles.png"), triangles);
-    write_png(folder / (stem + "-reference.png"), truth);
-    write_png(folder / (stem + "-hybrid-error.png"), difference(hybrid, truth));
-    write_png(folder / (stem + "-triangles-error.png"), difference(triangles, truth));
+    reference::write_png(folder / (stem + "-hybrid.png"), hybrid);
+    reference::write_png(folder / (stem + "-triangles.png"), triangles);
+    reference::write_png(folder / (stem + "-reference.png"), truth);
+    reference::write_png(folder / (stem + "-hybrid-error.png"), difference(hybrid, truth));
+    reference::write_png(folder / (stem + "-triangles-error.png"), difference(triangles, truth));
 }
 
 }  // namespace

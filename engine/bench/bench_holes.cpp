@@ -2,7 +2,6 @@
 #include "engine/bench/bench_view.h"
 #include "engine/bench/table.h"
 #include "tests/reference/comparison.h"
-#include "tests/reference/png.h"
 
 #include <fmt/format.h>
 
@@ -69,7 +68,7 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
             faulty += (faulty.empty() ? "" : " ") + view.name;
             if (!options.pictures.empty()) {
                 std::filesystem::create_directories(options.pictures);
-                write_png(options.pictures / (bench_model.name + "-" + view.name + "-holes.png"), marked);
+                reference::write_png(options.pictures / (bench_model.name + "-" + view.name + "-holes.png"), marked);
             }
         }
         if (!sum.clean()) report["clean"] = false;

@@ -35,16 +35,6 @@ std::vector<NamedCamera> bench_cameras(const Box& bounds, const QualityOptions& 
     return cameras;
 }
 
-BakedModel bake_for(Renderer& renderer, const IndexedMesh& mesh, const BakeOptions& options,
-                    ForcedRepresentation representation) {
-    BakeOptions changed = options;
-    changed.cluster.representation = representation;
-    BakedModel baked;
-    baked.model = build_model(mesh, changed, baked.stats);
-    baked.on_device = renderer.load(view_of(baked.model));
-    return baked;
-}
-
 void show_progress(std::string_view text) {
     if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", text);
 }

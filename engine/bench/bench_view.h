@@ -1,4 +1,4 @@
-// What the two quality benchmarks share: a mesh, what it is baked to, and the cameras it is seen from.
+// What the two quality benchmarks share: the cameras that a model is seen from, and telling the user how far they are.
 #pragma once
 
 #include "engine/bench/bench_quality.h"
@@ -13,15 +13,6 @@ struct NamedCamera {
 };
 
 std::vector<NamedCamera> bench_cameras(const Box& bounds, const QualityOptions& options);
-
-/// Bakes a copy of `mesh` and puts it on the device.
-struct BakedModel {
-    Model model;
-    BakeStats stats;
-    std::shared_ptr<const GpuModel> on_device;
-};
-BakedModel bake_for(Renderer& renderer, const IndexedMesh& mesh, const BakeOptions& options,
-                    ForcedRepresentation representation);
 
 /// Tells the terminal what is going on; an empty text wipes the line. Nothing where stderr is no terminal.
 void show_progress(std::string_view text);

@@ -127,7 +127,8 @@ int run(int argc, char** argv) {
                                   : bench::bench_holes(models, chosen.quality);
         clean = report.value("clean", true);
     }
-    if (!report_file.empty()) write_text_file(report_file, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!report_file.empty())
+        write_text_file(report_file, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return clean ? 0 : kExitFailure;
 }
 

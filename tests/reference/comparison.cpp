@@ -1,5 +1,6 @@
 #include "tests/reference/comparison.h"
 
+#include "engine/capture/png_file.h"
 #include "preprocess/mesh/read_mesh.h"
 #include "tests/reference/lighting_twin.h"
 #include "tests/reference/surfel_tolerance.h"
@@ -45,6 +46,15 @@ IndexedMesh load_mesh(const std::filesystem::path& path) {
     return repair_mesh(read_mesh_file(path), RepairOptions{}, report, path.string());
 }
 
+BakedModel bake_for(Renderer& renderer, const IndexedMesh& mesh, BakeOptions options,
+                    ForcedRepresentation representation) {
+    options.cluster.representation = representation;
+    BakedModel baked;
+    baked.model = build_model(mesh, options, baked.stats);
+    baked.on_device = renderer.load(view_of(baked.model));
+    return baked;
+}
+
 ReferenceView reference_view(const IndexedMesh& mesh, const Camera& camera, std::uint32_t width, std::uint32_t height) {
     const Vec3d& offset = mesh.source_offset;
     const glm::dmat4 to_source = glm::scale(
@@ -66,6 +76,13 @@ ColourImage colours(const Frame& frame) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         image.pixels[i] = {frame.rgba[4 * i], frame.rgba[4 * i + 1], frame.rgba[4 * i + 2]};
     return image;
+}
+
+void write_png(const std::filesystem::path& path, const ColourImage& image) {
+    Picture picture{image.width, image.height, {}};
+    for (const Rgb8 pixel : image.pixels)
+        picture.rgba.insert(picture.rgba.end(), {pixel.r, pixel.g, pixel.b, 255});
+    splice::write_png(path, picture);
 }
 
 Truth truth_of(const ReferenceScene& oracle, const IndexedMesh& mesh, const Scene& scene, const Camera& camera,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/capture/capture.h"
+#include "preprocess/build_model/build_model.h"
 #include "preprocess/mesh/indexed_mesh.h"
 #include "tests/reference/metrics.h"
 #include "tests/reference/reference_scene.h"
@@ -12,6 +13,15 @@ namespace splice::reference {
 
 /// Reads and repairs: the mesh that the bake sees. Throws InputError, SystemError.
 IndexedMesh load_mesh(const std::filesystem::path& path);
+
+/// Bakes a copy of `mesh` and puts it on the renderer's device.
+struct BakedModel {
+    Model model;
+    BakeStats stats;
+    std::shared_ptr<const GpuModel> on_device;
+};
+BakedModel bake_for(Renderer& renderer, const IndexedMesh& mesh, BakeOptions options,
+                    ForcedRepresentation representation = ForcedRepresentation::kHybrid);
 
 /// The engine's camera, as the oracle takes it: the mesh in unit-box units -> source units -> eye.
 ReferenceView reference_view(const IndexedMesh& mesh, const Camera& camera, std::uint32_t width, std::uint32_t height);
@@ -45,5 +55,8 @@ SurfaceCheck check_frame(Renderer& renderer, const Scene& scene, const ModelView
                          const IndexedMesh& mesh, CaptureSettings settings);
 
 ColourImage colours(const Frame& frame);
+
+/// For people to look at. Throws SystemError.
+void write_png(const std::filesystem::path& path, const ColourImage& image);
 
 }  // namespace splice::reference

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -78,6 +79,17 @@ double psnr(const ColourImage& image, const ColourImage& reference, const Mask* 
     }
     if (pixels == 0) return std::nan("");
     return 10 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(pixels) / static_cast<double>(squares));
+}
+
+ColourImage difference(const ColourImage& image, const ColourImage& reference, int gain) {
+    require_same_size(image, reference);
+    ColourImage result(image.width, image.height);
+    const auto channel = [&](int a, int b) { return static_cast<std::uint8_t>(std::min(255, gain * std::abs(a - b))); };
+    std::transform(image.pixels.begin(), image.pixels.end(), reference.pixels.begin(), result.pixels.begin(),
+                   [&](Rgb8 a, Rgb8 b) {
+                       return Rgb8{channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
+                   });
+    return result;
 }
 
 double silhouette_iou(const Mask& a, const Mask& b) {

@@ -19,6 +19,9 @@ Mask dilated(const Mask& mask, double radius);
 /// over its set pixels only; NaN when there is none. Throws std::invalid_argument when sizes differ.
 double psnr(const ColourImage& image, const ColourImage& reference, const Mask* where = nullptr);
 
+/// Brightness = |image - reference| times `gain`, per channel.
+ColourImage difference(const ColourImage& image, const ColourImage& reference, int gain = 4);
+
 /// Intersection over union of two coverages; 1 when both are empty.
 double silhouette_iou(const Mask& a, const Mask& b);
 

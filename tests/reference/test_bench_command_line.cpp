@@ -1,0 +1,83 @@
+#include "tests/support/test_files.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+using namespace splice;
+
+namespace {
+
+struct Outcome {
+    int exit_code;
+    std::string out, err;
+};
+
+std::string contents(const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+Outcome bench(const std::string& arguments) {
+    const test::TemporaryFolder folder;
+    const std::string command = "'" + test::program("splice-bench").string() + "' " + arguments + " >'" +
+                                (folder / "out").string() + "' 2>'" + (folder / "err").string() + "' </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder / "out"), contents(folder / "err")};
+}
+
+bool one_line(const std::string& text) {
+    return !text.empty() && text.find('\n') == text.size() - 1;
+}
+
+}  // namespace
+
+TEST_CASE("splice-bench --help names its commands and options") {
+    const Outcome top = bench("--help");
+    CHECK(top.exit_code == 0);
+    for (const char* word : {"bake", "capture", "holes"})
+        CHECK(top.out.find(word) != std::string::npos);
+    const Outcome holes = bench("holes --help");
+    CHECK(holes.exit_code == 0);
+    for (const char* word : {"--directions", "--size", "--json", "--pictures"})
+        CHECK(holes.out.find(word) != std::string::npos);
+}
+
+TEST_CASE("splice-bench answers a wrong command line with one line and exit code 2") {
+    for (const char* arguments : {"", "no-such-command", "holes --directions 27", "holes --directions x",
+                                  "capture --size 0x5", "capture --size 12", "bake --runs 0", "bake no-such-file.obj",
+                                  "holes --representation points", "capture --triangle-share 2"}) {
+        INFO(arguments);
+        const Outcome outcome = bench(arguments);
+        CHECK(outcome.exit_code == 2);
+        CHECK(one_line(outcome.err));
+        CHECK(outcome.out.empty());
+    }
+}
+
+TEST_CASE("splice-bench measures a bake and writes what it printed as JSON") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "square.off") << "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+    const Outcome outcome = bench("bake --runs 2 --json '" + (folder / "report.json").string() + "' '" +
+                                  (folder / "square.off").string() + "'");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.out.find("square.off") != std::string::npos);
+    const auto report = nlohmann::json::parse(contents(folder / "report.json"));
+    REQUIRE(report.size() == 1);
+    CHECK(report[0]["runs"].size() == 2);
+    CHECK(report[0]["runs"][0]["output"]["triangles"] == 2);
+}
+
+TEST_CASE("splice-bench reports a mesh that cannot be baked as a failure") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "empty.obj") << "# nothing\n";
+    const Outcome outcome = bench("bake '" + (folder / "empty.obj").string() + "'");
+    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.err.find("splice-bench: ") != std::string::npos);
+}

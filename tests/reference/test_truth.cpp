@@ -1,0 +1,52 @@
+// The hybrid looks as true as the triangles it replaces: both drawn by the engine with one sample a pixel, both held
+// against 64 ray-cast samples a pixel of the original mesh.
+#include "preprocess/mesh/shapes.h"
+#include "tests/reference/comparison.h"
+#include "tests/support/test_files.h"
+
+#include <catch2/catch.hpp>
+
+using namespace splice;
+using namespace splice::reference;
+
+namespace {
+
+constexpr std::uint32_t kSize = 512;
+constexpr double kMayLose = 0.5;  // dB
+
+void check_truth_of(const std::string& name, const IndexedMesh& mesh) {
+    Renderer renderer{RendererOptions{}};
+    const BakedModel hybrid = bake_for(renderer, mesh, {});
+    const BakedModel triangles = bake_for(renderer, mesh, {}, ForcedRepresentation::kTriangles);
+    const Scene hybrid_scene = scene_of(hybrid.on_device), triangle_scene = scene_of(triangles.on_device);
+    CaptureSettings settings;
+    settings.width = settings.height = kSize;
+    settings.camera = frame_camera(hybrid_scene.bounds(), {}, kSize, kSize);
+
+    const ReferenceScene oracle(mesh);
+    const bool two_sided = (hybrid.model.info.flags & format::kTwoSided) != 0;
+    const Truth truth = truth_of(oracle, mesh, hybrid_scene, settings.camera, kSize, kSize, two_sided);
+    const Frame frame = renderer.render(hybrid_scene, settings);
+    const Agreement ours = compare(frame, truth), theirs = compare(renderer.render(triangle_scene, settings), truth);
+    INFO(name << ": hybrid " << ours.inside_db << " dB, triangles " << theirs.inside_db << " dB");
+    CHECK(ours.inside_db >= theirs.inside_db - kMayLose);
+    CHECK(ours.iou > 0.97);
+    if (ours.inside_db < theirs.inside_db - kMayLose) {
+        write_png(test::artefact(name + "-hybrid.png"), colours(frame));
+        write_png(test::artefact(name + "-hybrid-error.png"), difference(colours(frame), truth.image));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("the thesis's models lose at most half a decibel") {
+    for (const char* name : {"bones", "cow", "dragon-50000", "bunny", "crater"}) {
+        const auto path = test::model_file(std::string("meshes/") + name + ".smf");
+        if (path) check_truth_of(name, load_mesh(*path));
+    }
+}
+
+TEST_CASE("a bumpy sphere loses at most half a decibel") {
+    RepairReport report;
+    check_truth_of("bumpy-sphere", repair_mesh(shapes::bumpy_sphere(100000), RepairOptions{}, report, "shape"));
+}

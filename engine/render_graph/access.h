@@ -55,9 +55,9 @@ const char* describe(PassKind kind);
 /// Stages and accesses of a use; shader_stages only counts for uses by shaders.
 Scope scope_of(AccessKind kind, VkPipelineStageFlags shader_stages);
 /// What loading or clearing an attachment does when its first subpass begins.
-Scope load_scope(VkFormat format, VkAttachmentLoadOp load, VkAttachmentLoadOp stencil_load);
-/// What storing an attachment does when its last subpass ends. VK_ATTACHMENT_STORE_OP_DONT_CARE counts as a write.
-Scope store_scope(VkFormat format, VkAttachmentStoreOp store, VkAttachmentStoreOp stencil_store);
+Scope load_scope(VkFormat format, VkAttachmentLoadOp load);
+/// What storing an attachment does when its last subpass ends. DONT_CARE counts as a write, NONE touches nothing.
+Scope store_scope(VkFormat format, VkAttachmentStoreOp store);
 /// The layout that a use needs; depth-stencil images have one layout for all of their reads.
 VkImageLayout layout_of(AccessKind kind, VkFormat format);
 VkImageUsageFlags image_usage(AccessKind kind);

@@ -5,14 +5,14 @@
 #include "engine/render_graph/plan.h"
 
 #include <cstdint>
-#include <span>
+#include <functional>
 #include <string>
 
 namespace splice::graph {
 
-/// Sizes that the device reports for a resource; only the executor knows them.
+/// What the device says of a resource; only the executor knows it.
 struct MemoryRequirement {
-    uint64_t size = 0;       ///< bytes
+    uint64_t size = 0;       ///< bytes; 0: not to be placed, the resource gets memory of its own
     uint64_t alignment = 1;  ///< bytes, a power of two
     uint32_t memory_type_bits = 0;
 };
@@ -24,9 +24,9 @@ struct CompileOptions {
     // Switches, each of which changes cost and never the image.
     bool cull = true;
     bool merge = true;
-    bool alias = true;  ///< transients that never live together may share memory; needs `memory`
-    /// One a declared resource, or empty: then nothing is placed. The entries of imported resources are ignored.
-    std::span<const MemoryRequirement> memory;
+    bool alias = true;  ///< transients that never live together may share memory
+    /// Called once for each transient resource that the plan uses, its usage flags filled in. Empty: nothing is placed.
+    std::function<MemoryRequirement(uint32_t resource, const PlannedResource& planned)> memory;
 };
 
 /// Throws GraphError for what a single declaration call cannot see: attachments of different size or sample count in

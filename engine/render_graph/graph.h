@@ -222,6 +222,15 @@ struct ResourceDeclaration {
     friend bool operator==(const ResourceDeclaration&, const ResourceDeclaration&) = default;
 };
 
+/// The structure of a frame as plain data. Equal declarations compile to equal plans: names, clear values and record
+/// functions do not count.
+struct Declaration {
+    std::vector<PassDeclaration> passes;
+    std::vector<ResourceDeclaration> resources;
+    std::vector<Access> accesses;  ///< those of a pass are contiguous
+    friend bool operator==(const Declaration&, const Declaration&) = default;
+};
+
 class Graph {
   public:
     /// Transient: lives within the frame, has no contents before its first write.
@@ -237,36 +246,39 @@ class Graph {
     /// Forgets everything, keeps the storage for the next frame's declaration.
     void clear();
 
-    // The declaration as plain data, for the compiler.
-    std::span<const PassDeclaration> passes() const { return passes_; }
-    std::span<const ResourceDeclaration> resources() const { return resources_; }
-    std::span<const Access> accesses() const { return accesses_; }
+    const Declaration& declaration() const { return declaration_; }
     std::span<const Access> accesses(uint32_t pass) const;
     const std::string& pass_name(uint32_t pass) const { return pass_names_[pass]; }
     const std::string& resource_name(uint32_t resource) const { return resource_names_[resource]; }
     const VkClearValue& clear_value(uint32_t access) const { return clear_values_[access]; }
     const RecordFunction& record_function(uint32_t pass) const { return functions_[pass]; }
 
-    /// Equal declarations compile to equal plans; clear values, names and record functions do not count.
-    bool same_structure(const Graph& other) const;
-
   private:
     friend class Pass;
+    struct ResourceState {
+        uint32_t version = 0;
+        bool has_contents = false;
+        uint32_t last_writer = UINT32_MAX;  // pass
+        uint32_t last_access = UINT32_MAX;  // index into Declaration::accesses
+    };
     uint32_t add_resource(std::string_view name, const ResourceDeclaration& declaration);
-    uint32_t add_access(uint32_t pass, uint32_t resource, uint32_t version, AccessKind kind, const Contents& contents,
-                        VkPipelineStageFlags stages);
-    [[noreturn]] void fail(uint32_t pass, uint32_t resource, const std::string& problem) const;
-    PassDeclaration& open_pass(uint32_t pass, const char* call);
+    uint32_t add_access(uint32_t pass, ResourceKind resource_kind, uint32_t resource, uint32_t version, AccessKind kind,
+                        const Contents& contents, VkPipelineStageFlags stages);
+    PassDeclaration& open_pass(uint32_t pass);
     void check_access(uint32_t pass, const Access& access) const;
+    void check_contents(uint32_t pass, const Access& access) const;
+    void check_format(uint32_t pass, const Access& access) const;
+    void check_feedback(uint32_t pass, const Access& access) const;
+    [[noreturn]] void fail(uint32_t pass, uint32_t resource, const std::string& problem) const;
 
-    std::vector<PassDeclaration> passes_;
-    std::vector<ResourceDeclaration> resources_;
-    std::vector<Access> accesses_;
+    Declaration declaration_;
+    std::vector<ResourceState> states_;
     std::vector<VkClearValue> clear_values_;  // one an access
     std::vector<RecordFunction> functions_;   // one a pass
     std::vector<std::string> pass_names_, resource_names_;
-    std::vector<uint32_t> current_version_;  // one a resource
-    std::vector<bool> has_contents_;         // one a resource
 };
+
+/// "image 'depth'", "buffer 'pixels'": for messages.
+std::string quote_resource(const Graph& graph, uint32_t resource);
 
 }  // namespace splice::graph

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace splice::graph {
@@ -107,8 +106,8 @@ struct PlannedResource {
     /// A transient image that lives in one render pass and is neither loaded nor stored: no memory needed on tilers.
     bool memoryless = false;
     /// Place of a transient resource in the heap of its memory class; `none` when nothing was placed (see compile.h).
-    uint32_t heap = none;
-    uint64_t offset = 0;
+    uint32_t heap = none;  ///< into Plan::heaps
+    uint64_t offset = 0;   ///< bytes
     friend bool operator==(const PlannedResource&, const PlannedResource&) = default;
 };
 
@@ -134,7 +133,6 @@ enum class UnmergedReason : uint8_t {
     clears_attachment,     ///< the later pass clears or discards `resource`, which the earlier one uses
     different_layouts,     ///< both only read `resource`, but in different layouts
     pass_between,          ///< `other` must run between them
-    too_many_attachments,  ///< input attachments of `resource`'s group would exceed a limit
     switched_off,          ///< CompileOptions::merge
 };
 

@@ -21,21 +21,18 @@
 
 #include "engine/render_graph/compile.h"
 #include "engine/render_graph/executor/pass_context.h"
+#include "engine/render_graph/executor/pass_pipelines.h"
 #include "engine/render_graph/graph.h"
 #include "engine/render_graph/plan.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/image.h"
-#include "engine/vulkan/pipeline.h"
 
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace splice::graph {
@@ -44,18 +41,27 @@ namespace splice::graph {
 class Bindings {
   public:
     void bind(ImageHandle handle, const gpu::Image& image);
-    void bind(ImageHandle handle, const BoundImage& image);  ///< e.g. of a swapchain
+    /// E.g. of a swapchain. `description` as the graph declares it.
+    void bind(ImageHandle handle, const BoundImage& image, const ImageDescription& description);
     void bind(BufferHandle handle, const gpu::Buffer& buffer);
 
+    struct Entry {
+        uint32_t resource = 0;
+        BoundResource bound;
+        ImageDescription image;    ///< of a bound image
+        BufferDescription buffer;  ///< of a bound buffer
+    };
+    const std::vector<Entry>& entries() const { return entries_; }
+
   private:
-    friend class Executor;
-    std::vector<std::pair<uint32_t, BoundResource>> resources_;
+    std::vector<Entry> entries_;
 };
 
 struct ExecutorOptions {
     uint32_t frames_in_flight = 1;
     bool timestamps = true;  ///< where the device has them
-    /// Compiled plans kept, with their transient resources; the one unused for longest goes first.
+    /// Compiled plans kept, with their transient resources; the one unused for longest goes first, once the device is
+    /// idle. At least as many as one command buffer executes graphs.
     uint32_t max_plans = 8;
     bool cull = true, merge = true, alias = true;  ///< as in CompileOptions
 };
@@ -97,17 +103,6 @@ class Executor {
   private:
     struct State;
     std::unique_ptr<State> state_;
-};
-
-/// The graphics pipelines of one drawing routine, one for each subpass that it is recorded in.
-class PassPipelines {
-  public:
-    /// `options` is called when (render pass, subpass) is new; render_pass, subpass and samples are filled in here.
-    VkPipeline get(const gpu::Device& device, const PassContext& context,
-                   const std::function<gpu::GraphicsPipelineOptions()>& options);
-
-  private:
-    std::map<std::pair<VkRenderPass, uint32_t>, gpu::GraphicsPipeline> pipelines_;
 };
 
 }  // namespace splice::graph

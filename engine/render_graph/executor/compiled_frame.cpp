@@ -1,0 +1,247 @@
+#include "engine/render_graph/executor/compiled_frame.h"
+
+#include <string>
+#include <utility>
+
+namespace splice::graph {
+namespace {
+
+bool has_lazy_memory(const gpu::Device& device) {
+    VkPhysicalDeviceMemoryProperties properties;
+    vkGetPhysicalDeviceMemoryProperties(device.physical(), &properties);
+    for (uint32_t type = 0; type < properties.memoryTypeCount; ++type) {
+        if ((properties.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT) != 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+CompiledFrame::CompiledFrame(gpu::Device& device, RenderPassCache& render_passes, const ExecutorOptions& options,
+                             const Graph& graph, uint64_t id)
+    : device_(&device), id_(id), lazy_memory_(has_lazy_memory(device)), declaration_(graph.declaration()) {
+    CompileOptions compile_options;
+    compile_options.max_colour_attachments = device.limits().maxColorAttachments;
+    compile_options.max_input_attachments = device.limits().maxPerStageDescriptorInputAttachments;
+    compile_options.cull = options.cull;
+    compile_options.merge = options.merge;
+    compile_options.alias = options.alias;
+    compile_options.memory = [this](uint32_t resource, const PlannedResource& planned) {
+        return requirement(resource, planned);
+    };
+    plan_ = compile(graph, compile_options);
+
+    for (const Heap& heap : plan_.heaps) {
+        heaps_.push_back(device.memory().allocate({heap.size, heap.alignment, heap.memory_type_bits},
+                                                  gpu::MemoryUse::device, heap.images));
+        transient_bytes_ += heap.size;
+    }
+    bound_.resize(declaration_.resources.size());
+    needs_binding_.assign(declaration_.resources.size(), 0);
+    for (uint32_t resource = 0; resource < declaration_.resources.size(); ++resource) {
+        const ResourceDeclaration& declared = declaration_.resources[resource];
+        if (plan_.resources[resource].lifetime.first_group == none) continue;
+        if (declared.imported) {
+            needs_binding_[resource] = 1;
+        } else if (declared.kind == ResourceKind::image) {
+            create_image(graph, resource);
+        } else {
+            create_buffer(graph, resource);
+        }
+    }
+    for (const ImageBarrier& barrier : slice(plan_.image_barriers, plan_.final_barriers.images)) {
+        needs_binding_[barrier.resource] = 1;  // only imported resources are handed over
+    }
+    for (const RenderPass& render_pass : plan_.render_passes) {
+        render_passes_.push_back(render_passes.get(declaration_, plan_, render_pass));
+    }
+    framebuffers_.resize(plan_.render_passes.size());
+}
+
+VkImageCreateInfo CompiledFrame::image_info(uint32_t resource, const PlannedResource& planned) const {
+    const ImageDescription& image = declaration_.resources[resource].image;
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = image.format;
+    info.extent = {image.width, image.height, 1};
+    info.mipLevels = image.mip_levels;
+    info.arrayLayers = image.layers;
+    info.samples = image.samples;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = planned.image_usage;
+    if (planned.memoryless && lazy_memory_) info.usage |= VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
+    info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
+    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    return info;
+}
+
+VkBufferCreateInfo CompiledFrame::buffer_info(uint32_t resource, const PlannedResource& planned) const {
+    VkBufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    info.size = declaration_.resources[resource].buffer.size;
+    info.usage = planned.buffer_usage;
+    info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
+    return info;
+}
+
+MemoryRequirement CompiledFrame::requirement(uint32_t resource, const PlannedResource& planned) const {
+    VkMemoryRequirements2 requirements{};
+    requirements.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2;
+    if (declaration_.resources[resource].kind == ResourceKind::image) {
+        if (planned.memoryless && lazy_memory_) return {};
+        const VkImageCreateInfo info = image_info(resource, planned);
+        VkDeviceImageMemoryRequirements query{};
+        query.sType = VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS;
+        query.pCreateInfo = &info;
+        vkGetDeviceImageMemoryRequirements(device_->handle(), &query, &requirements);
+    } else {
+        const VkBufferCreateInfo info = buffer_info(resource, planned);
+        VkDeviceBufferMemoryRequirements query{};
+        query.sType = VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS;
+        query.pCreateInfo = &info;
+        vkGetDeviceBufferMemoryRequirements(device_->handle(), &query, &requirements);
+    }
+    const VkMemoryRequirements& memory = requirements.memoryRequirements;
+    return {memory.size, memory.alignment, memory.memoryTypeBits};
+}
+
+void CompiledFrame::create_image(const Graph& graph, uint32_t resource) {
+    const PlannedResource& planned = plan_.resources[resource];
+    const ImageDescription& description = declaration_.resources[resource].image;
+    const std::string& name = graph.resource_name(resource);
+    const VkDevice device = device_->handle();
+    const VkImageCreateInfo info = image_info(resource, planned);
+    TransientImage transient;
+    VkImage handle = VK_NULL_HANDLE;
+    gpu::check(vkCreateImage(device, &info, nullptr, &handle), "creating the image '" + name + "'");
+    transient.image = gpu::UniqueImage(device, handle);
+    device_->set_name(VK_OBJECT_TYPE_IMAGE, handle, name);
+    const gpu::Memory* memory = nullptr;
+    if (planned.heap != none) {
+        memory = &heaps_[planned.heap];
+    } else {
+        VkMemoryRequirements requirements;
+        vkGetImageMemoryRequirements(device, handle, &requirements);
+        transient.own_memory = device_->memory().allocate(requirements, gpu::MemoryUse::lazy, true);
+        memory = &transient.own_memory;
+    }
+    gpu::check(vkBindImageMemory(device, handle, memory->handle(), memory->offset() + planned.offset),
+               "binding the memory of '" + name + "'");
+    BoundImage& bound = bound_[resource].image;
+    bound.image = handle;
+    bound.usage = info.usage;
+    constexpr VkImageUsageFlags viewable =
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+    ++created_;
+    if ((info.usage & viewable) != 0) {
+        const VkImageAspectFlags aspects = aspects_of(description.format);
+        transient.view = gpu::create_image_view(*device_, handle, description.format, aspects, description.layers);
+        bound.view = bound.depth_view = bound.stencil_view = transient.view.get();
+        ++created_;
+        if (aspects == (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT)) {
+            transient.depth_view = gpu::create_image_view(*device_, handle, description.format,
+                                                          VK_IMAGE_ASPECT_DEPTH_BIT, description.layers);
+            transient.stencil_view = gpu::create_image_view(*device_, handle, description.format,
+                                                            VK_IMAGE_ASPECT_STENCIL_BIT, description.layers);
+            bound.depth_view = transient.depth_view.get();
+            bound.stencil_view = transient.stencil_view.get();
+            created_ += 2;
+        }
+    }
+    images_.push_back(std::move(transient));
+}
+
+void CompiledFrame::create_buffer(const Graph& graph, uint32_t resource) {
+    const PlannedResource& planned = plan_.resources[resource];
+    const std::string& name = graph.resource_name(resource);
+    const VkBufferCreateInfo info = buffer_info(resource, planned);
+    VkBuffer handle = VK_NULL_HANDLE;
+    gpu::check(vkCreateBuffer(device_->handle(), &info, nullptr, &handle), "creating the buffer '" + name + "'");
+    buffers_.emplace_back(device_->handle(), handle);
+    device_->set_name(VK_OBJECT_TYPE_BUFFER, handle, name);
+    const gpu::Memory& memory = heaps_[planned.heap];
+    gpu::check(vkBindBufferMemory(device_->handle(), handle, memory.handle(), memory.offset() + planned.offset),
+               "binding the memory of '" + name + "'");
+    bound_[resource].buffer = handle;
+    ++created_;
+}
+
+void CompiledFrame::bind(const Graph& graph, const Bindings& bindings) {
+    std::vector<uint8_t> missing = needs_binding_;
+    for (const Bindings::Entry& entry : bindings.entries()) {
+        if (entry.resource >= declaration_.resources.size() || !declaration_.resources[entry.resource].imported) {
+            throw GraphError("a binding names a resource that the graph does not import");
+        }
+        const ResourceDeclaration& declared = declaration_.resources[entry.resource];
+        const PlannedResource& planned = plan_.resources[entry.resource];
+        const std::string name = quote_resource(graph, entry.resource);
+        if (declared.kind == ResourceKind::image) {
+            if (entry.bound.image.image == VK_NULL_HANDLE || !(entry.image == declared.image)) {
+                throw GraphError(name + ": what is bound differs from the declaration in format, size or samples");
+            }
+            if ((planned.image_usage & ~entry.bound.image.usage) != 0) {
+                throw GraphError(name + ": what is bound was created without a usage that the passes need");
+            }
+        } else if (entry.bound.buffer == VK_NULL_HANDLE || entry.buffer.size < declared.buffer.size) {
+            throw GraphError(name + ": what is bound is smaller than the " + std::to_string(declared.buffer.size) +
+                             " bytes declared");
+        }
+        bound_[entry.resource] = entry.bound;
+        missing[entry.resource] = 0;
+    }
+    for (uint32_t resource = 0; resource < missing.size(); ++resource) {
+        if (missing[resource]) {
+            throw GraphError(quote_resource(graph, resource) + ": is imported but not bound; add it to the bindings");
+        }
+    }
+}
+
+VkFramebuffer CompiledFrame::framebuffer(uint32_t render_pass) {
+    const RenderPass& planned = plan_.render_passes[render_pass];
+    Framebuffer& cached = framebuffers_[render_pass];
+    const std::span<const Attachment> attachments = slice(plan_.attachments, planned.attachments);
+    bool fits = static_cast<bool>(cached.handle);
+    for (size_t i = 0; fits && i < attachments.size(); ++i) {
+        fits = cached.usages[i] == bound_[attachments[i].resource].image.usage;
+    }
+    if (fits) return cached.handle.get();
+
+    // Without images: swapchain images come and go, the framebuffer stays.
+    cached.usages.clear();
+    std::vector<VkFramebufferAttachmentImageInfo> infos;
+    for (const Attachment& attachment : attachments) {
+        const ImageDescription& image = declaration_.resources[attachment.resource].image;
+        cached.usages.push_back(bound_[attachment.resource].image.usage);
+        VkFramebufferAttachmentImageInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_ATTACHMENT_IMAGE_INFO;
+        info.usage = cached.usages.back();
+        info.width = image.width;
+        info.height = image.height;
+        info.layerCount = image.layers;
+        info.viewFormatCount = 1;
+        info.pViewFormats = &image.format;
+        infos.push_back(info);
+    }
+    VkFramebufferAttachmentsCreateInfo images{};
+    images.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_ATTACHMENTS_CREATE_INFO;
+    images.attachmentImageInfoCount = static_cast<uint32_t>(infos.size());
+    images.pAttachmentImageInfos = infos.data();
+    VkFramebufferCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    create.pNext = &images;
+    create.flags = VK_FRAMEBUFFER_CREATE_IMAGELESS_BIT;
+    create.renderPass = render_passes_[render_pass];
+    create.attachmentCount = static_cast<uint32_t>(infos.size());
+    create.width = planned.width;
+    create.height = planned.height;
+    create.layers = planned.layers;
+    VkFramebuffer handle = VK_NULL_HANDLE;
+    gpu::check(vkCreateFramebuffer(device_->handle(), &create, nullptr, &handle), "creating a framebuffer");
+    cached.handle = gpu::UniqueFramebuffer(device_->handle(), handle);
+    ++created_;
+    return handle;
+}
+
+}  // namespace splice::graph

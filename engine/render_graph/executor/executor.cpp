@@ -1,0 +1,245 @@
+#include "engine/render_graph/executor/executor.h"
+
+#include "engine/render_graph/executor/compiled_frame.h"
+#include "engine/render_graph/executor/render_pass_cache.h"
+#include "engine/vulkan/timestamps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace splice::graph {
+
+void Bindings::bind(ImageHandle handle, const gpu::Image& image) {
+    const gpu::ImageOptions& options = image.options();
+    const BoundImage bound{image.handle(), image.view(), image.view(VK_IMAGE_ASPECT_DEPTH_BIT),
+                           image.view(VK_IMAGE_ASPECT_STENCIL_BIT), options.usage};
+    bind(handle, bound,
+         {options.format, options.width, options.height, options.layers, options.mip_levels, options.samples});
+}
+
+void Bindings::bind(ImageHandle handle, const BoundImage& image, const ImageDescription& description) {
+    entries_.push_back({handle.resource, {image, VK_NULL_HANDLE}, description, {}});
+}
+
+void Bindings::bind(BufferHandle handle, const gpu::Buffer& buffer) {
+    entries_.push_back({handle.resource, {{}, buffer.handle()}, {}, {buffer.size()}});
+}
+
+struct Executor::State {
+    /// Times of one frame in flight.
+    struct Slot {
+        gpu::Timestamps timestamps;
+        std::vector<std::string> passes;  // as recorded
+    };
+
+    State(gpu::Device& device_, const ExecutorOptions& options_)
+        : device(&device_), options(options_), render_passes(device_), slots(options_.frames_in_flight) {}
+
+    CompiledFrame& find_or_compile(const Graph& graph);
+    void record_barriers(VkCommandBuffer commands, const BarrierBatch& batch);
+    void begin_render_pass(VkCommandBuffer commands, const Graph& graph, uint32_t index);
+    void record_group(const Graph& graph, const Group& group, PassContext& context, Slot& slot);
+    void stamp(VkCommandBuffer commands, Slot& slot) const {
+        if (slot.timestamps) slot.timestamps.write(commands);
+    }
+
+    gpu::Device* device;
+    ExecutorOptions options;
+    RenderPassCache render_passes;
+    std::vector<std::unique_ptr<CompiledFrame>> frames;
+    CompiledFrame* current = nullptr;
+    std::vector<Slot> slots;
+    ExecutorStatistics statistics;
+    uint64_t executions = 0;
+    // Kept between calls for their storage.
+    std::vector<VkImageMemoryBarrier2> image_barriers;
+    std::vector<VkBufferMemoryBarrier2> buffer_barriers;
+    std::vector<VkImageView> views;
+    std::vector<VkClearValue> clear_values;
+};
+
+CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
+    for (const auto& frame : frames) {
+        if (frame->declaration() == graph.declaration()) return *frame;
+    }
+    if (frames.size() >= std::max(options.max_plans, 1U)) {
+        const auto oldest = std::min_element(frames.begin(), frames.end(),
+                                             [](const auto& a, const auto& b) { return a->last_used < b->last_used; });
+        device->wait_idle();
+        frames.erase(oldest);
+        current = nullptr;
+    }
+    const uint64_t render_passes_before = render_passes.created();
+    frames.push_back(
+        std::make_unique<CompiledFrame>(*device, render_passes, options, graph, ++statistics.compilations));
+    statistics.objects_created += render_passes.created() - render_passes_before;
+    return *frames.back();
+}
+
+void Executor::State::record_barriers(VkCommandBuffer commands, const BarrierBatch& batch) {
+    if (batch.empty()) return;
+    const Plan& plan = current->plan();
+    image_barriers.clear();
+    for (const ImageBarrier& planned : slice(plan.image_barriers, batch.images)) {
+        VkImageMemoryBarrier2 barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+        barrier.srcStageMask = planned.source.stages;
+        barrier.srcAccessMask = planned.source.access;
+        barrier.dstStageMask = planned.destination.stages;
+        barrier.dstAccessMask = planned.destination.access;
+        barrier.oldLayout = planned.old_layout;
+        barrier.newLayout = planned.new_layout;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = current->bound()[planned.resource].image.image;
+        const VkFormat format = current->declaration().resources[planned.resource].image.format;
+        barrier.subresourceRange = {aspects_of(format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+        image_barriers.push_back(barrier);
+    }
+    buffer_barriers.clear();
+    for (const BufferBarrier& planned : slice(plan.buffer_barriers, batch.buffers)) {
+        VkBufferMemoryBarrier2 barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+        barrier.srcStageMask = planned.source.stages;
+        barrier.srcAccessMask = planned.source.access;
+        barrier.dstStageMask = planned.destination.stages;
+        barrier.dstAccessMask = planned.destination.access;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.buffer = current->bound()[planned.resource].buffer;
+        barrier.size = VK_WHOLE_SIZE;
+        buffer_barriers.push_back(barrier);
+    }
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(image_barriers.size());
+    dependency.pImageMemoryBarriers = image_barriers.data();
+    dependency.bufferMemoryBarrierCount = static_cast<uint32_t>(buffer_barriers.size());
+    dependency.pBufferMemoryBarriers = buffer_barriers.data();
+    vkCmdPipelineBarrier2(commands, &dependency);
+    ++statistics.barrier_commands;
+    statistics.image_barriers += batch.images.count;
+    statistics.buffer_barriers += batch.buffers.count;
+}
+
+void Executor::State::begin_render_pass(VkCommandBuffer commands, const Graph& graph, uint32_t index) {
+    const RenderPass& planned = current->plan().render_passes[index];
+    views.clear();
+    clear_values.clear();
+    for (const Attachment& attachment : slice(current->plan().attachments, planned.attachments)) {
+        views.push_back(current->bound()[attachment.resource].image.view);
+        const bool clears = attachment.clear_access != none;
+        clear_values.push_back(clears ? graph.clear_value(attachment.clear_access) : VkClearValue{});
+    }
+    VkRenderPassAttachmentBeginInfo images{};
+    images.sType = VK_STRUCTURE_TYPE_RENDER_PASS_ATTACHMENT_BEGIN_INFO;
+    images.attachmentCount = static_cast<uint32_t>(views.size());
+    images.pAttachments = views.data();
+    VkRenderPassBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    begin.pNext = &images;
+    begin.renderPass = current->render_pass(index);
+    begin.framebuffer = current->framebuffer(index);
+    begin.renderArea.extent = {planned.width, planned.height};
+    begin.clearValueCount = static_cast<uint32_t>(clear_values.size());
+    begin.pClearValues = clear_values.data();
+    vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    ++statistics.render_passes;
+}
+
+void Executor::State::record_group(const Graph& graph, const Group& group, PassContext& context, Slot& slot) {
+    const VkCommandBuffer commands = context.commands;
+    const bool graphics = group.render_pass != none;
+    if (graphics) {
+        begin_render_pass(commands, graph, group.render_pass);
+        const RenderPass& planned = current->plan().render_passes[group.render_pass];
+        context.render_pass = current->render_pass(group.render_pass);
+        context.extent = {planned.width, planned.height};
+        context.samples = planned.samples;
+    } else {
+        context.render_pass = VK_NULL_HANDLE;
+        context.extent = {};
+    }
+    context.subpass = 0;
+    for (const uint32_t pass : slice(current->plan().order, group.passes)) {
+        if (graphics) {
+            if (context.subpass > 0) vkCmdNextSubpass(commands, VK_SUBPASS_CONTENTS_INLINE);
+            const VkViewport viewport{
+                0, 0, static_cast<float>(context.extent.width), static_cast<float>(context.extent.height), 0, 1};
+            const VkRect2D scissor{{0, 0}, context.extent};
+            vkCmdSetViewport(commands, 0, 1, &viewport);
+            vkCmdSetScissor(commands, 0, 1, &scissor);
+        }
+        device->begin_label(commands, graph.pass_name(pass));
+        if (graph.record_function(pass)) graph.record_function(pass)(context);
+        device->end_label(commands);
+        slot.passes.push_back(graph.pass_name(pass));
+        stamp(commands, slot);
+        ++context.subpass;
+    }
+    if (graphics) vkCmdEndRenderPass(commands);
+}
+
+Executor::Executor(gpu::Device& device, const ExecutorOptions& options)
+    : state_(std::make_unique<State>(device, options)) {}
+
+Executor::~Executor() = default;
+
+void Executor::execute(const Graph& graph, const Bindings& bindings, VkCommandBuffer commands, uint32_t frame_slot) {
+    State& state = *state_;
+    if (frame_slot >= state.slots.size()) {
+        throw GraphError("frame slot " + std::to_string(frame_slot) + " of " + std::to_string(state.slots.size()));
+    }
+    state.current = &state.find_or_compile(graph);
+    CompiledFrame& frame = *state.current;
+    frame.last_used = ++state.executions;
+    frame.bind(graph, bindings);
+
+    ExecutorStatistics& statistics = state.statistics;
+    statistics.passes = static_cast<uint32_t>(frame.plan().order.size());
+    statistics.render_passes = statistics.barrier_commands = statistics.image_barriers = 0;
+    statistics.buffer_barriers = 0;
+    statistics.transient_bytes = frame.transient_bytes();
+
+    State::Slot& slot = state.slots[frame_slot];
+    slot.passes.clear();
+    if (state.options.timestamps && state.device->features().timestamps) {
+        if (slot.timestamps.capacity() < statistics.passes + 1) {
+            slot.timestamps = gpu::Timestamps(*state.device, statistics.passes + 1);
+            ++statistics.objects_created;
+        }
+        slot.timestamps.reset(commands);
+    }
+    state.stamp(commands, slot);
+
+    PassContext context;
+    context.commands = commands;
+    context.plan_id = frame.id();
+    context.frame_slot = frame_slot;
+    context.resources = frame.bound();
+    for (const Group& group : frame.plan().groups) {
+        state.record_barriers(commands, group.barriers);
+        state.record_group(graph, group, context, slot);
+    }
+    state.record_barriers(commands, frame.plan().final_barriers);
+    statistics.objects_created += frame.take_created();
+}
+
+const Plan& Executor::plan() const {
+    if (!state_->current) throw GraphError("no graph has been executed");
+    return state_->current->plan();
+}
+
+std::vector<PassTiming> Executor::timings(uint32_t frame_slot) const {
+    const State::Slot& slot = state_->slots.at(frame_slot);
+    if (!slot.timestamps) return {};
+    const std::vector<double> times = slot.timestamps.read_ms();
+    std::vector<PassTiming> timings;
+    for (size_t i = 0; i < slot.passes.size(); ++i)
+        timings.push_back({slot.passes[i], times[i + 1] - times[i]});
+    return timings;
+}
+
+const ExecutorStatistics& Executor::statistics() const {
+    return state_->statistics;
+}
+
+}  // namespace splice::graph

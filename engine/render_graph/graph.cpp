@@ -1,0 +1,334 @@
+#include "engine/render_graph/graph.h"
+
+namespace splice::graph {
+namespace {
+
+constexpr VkPipelineStageFlags kGraphicsShaders =
+    VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+constexpr VkPipelineStageFlags kComputeShader = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+
+bool has_shader_stages(AccessKind kind) {
+    switch (kind) {
+        case AccessKind::sampled:
+        case AccessKind::storage_read:
+        case AccessKind::storage_write:
+        case AccessKind::storage_read_write:
+        case AccessKind::uniform:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool allowed(AccessKind kind, PassKind pass) {
+    switch (kind) {
+        case AccessKind::colour_attachment:
+        case AccessKind::depth_stencil_attachment:
+        case AccessKind::depth_stencil_read:
+        case AccessKind::input_attachment:
+        case AccessKind::vertex:
+        case AccessKind::index:
+            return pass == PassKind::graphics;
+        case AccessKind::transfer_read:
+        case AccessKind::transfer_write:
+            return pass == PassKind::transfer;
+        default:
+            return pass != PassKind::transfer;
+    }
+}
+
+}  // namespace
+
+VkClearValue clear_colour(float red, float green, float blue, float alpha) {
+    VkClearValue value;
+    value.color = {.float32 = {red, green, blue, alpha}};
+    return value;
+}
+
+VkClearValue clear_colour_uint(uint32_t red, uint32_t green, uint32_t blue, uint32_t alpha) {
+    VkClearValue value;
+    value.color = {.uint32 = {red, green, blue, alpha}};
+    return value;
+}
+
+VkClearValue clear_depth_stencil(float depth, uint32_t stencil) {
+    VkClearValue value;
+    value.depthStencil = {depth, stencil};
+    return value;
+}
+
+std::string quote_resource(const Graph& graph, uint32_t resource) {
+    const bool image = graph.declaration().resources[resource].kind == ResourceKind::image;
+    return (image ? "image '" : "buffer '") + graph.resource_name(resource) + "'";
+}
+
+uint32_t Graph::add_resource(std::string_view name, const ResourceDeclaration& declaration) {
+    const ImageDescription& image = declaration.image;
+    if (declaration.kind == ResourceKind::image && (image.format == VK_FORMAT_UNDEFINED || image.width == 0 ||
+                                                    image.height == 0 || image.layers == 0 || image.mip_levels == 0)) {
+        throw GraphError("image '" + std::string(name) + "': needs a format, and at least 1 pixel, layer and level");
+    }
+    if (declaration.kind == ResourceKind::buffer && declaration.buffer.size == 0) {
+        throw GraphError("buffer '" + std::string(name) + "': needs at least 1 byte");
+    }
+    const auto index = static_cast<uint32_t>(declaration_.resources.size());
+    declaration_.resources.push_back(declaration);
+    resource_names_.emplace_back(name);
+    ResourceState state;
+    state.has_contents = declaration.imported && (declaration.kind == ResourceKind::buffer ||
+                                                  declaration.import.before.layout != VK_IMAGE_LAYOUT_UNDEFINED);
+    states_.push_back(state);
+    return index;
+}
+
+ImageHandle Graph::create_image(std::string_view name, const ImageDescription& description) {
+    ResourceDeclaration declaration;
+    declaration.image = description;
+    return {add_resource(name, declaration), 0};
+}
+
+BufferHandle Graph::create_buffer(std::string_view name, const BufferDescription& description) {
+    ResourceDeclaration declaration;
+    declaration.kind = ResourceKind::buffer;
+    declaration.buffer = description;
+    return {add_resource(name, declaration), 0};
+}
+
+ImageHandle Graph::import_image(std::string_view name, const ImageDescription& description,
+                                const ImportOptions& options) {
+    ResourceDeclaration declaration;
+    declaration.imported = true;
+    declaration.image = description;
+    declaration.import = options;
+    return {add_resource(name, declaration), 0};
+}
+
+BufferHandle Graph::import_buffer(std::string_view name, const BufferDescription& description,
+                                  const ImportOptions& options) {
+    ResourceDeclaration declaration;
+    declaration.kind = ResourceKind::buffer;
+    declaration.imported = true;
+    declaration.buffer = description;
+    declaration.import = options;
+    return {add_resource(name, declaration), 0};
+}
+
+Pass Graph::add_pass(std::string_view name, PassKind kind) {
+    PassDeclaration pass;
+    pass.kind = kind;
+    pass.first_access = static_cast<uint32_t>(declaration_.accesses.size());
+    declaration_.passes.push_back(pass);
+    pass_names_.emplace_back(name);
+    functions_.emplace_back();
+    return {this, static_cast<uint32_t>(declaration_.passes.size() - 1)};
+}
+
+void Graph::clear() {
+    declaration_.passes.clear();
+    declaration_.resources.clear();
+    declaration_.accesses.clear();
+    states_.clear();
+    clear_values_.clear();
+    functions_.clear();
+    pass_names_.clear();
+    resource_names_.clear();
+}
+
+std::span<const Access> Graph::accesses(uint32_t pass) const {
+    const PassDeclaration& declared = declaration_.passes[pass];
+    return std::span(declaration_.accesses).subspan(declared.first_access, declared.access_count);
+}
+
+void Graph::fail(uint32_t pass, uint32_t resource, const std::string& problem) const {
+    throw GraphError("pass '" + pass_names_[pass] + "', " + quote_resource(*this, resource) + ": " + problem);
+}
+
+PassDeclaration& Graph::open_pass(uint32_t pass) {
+    if (pass + 1 != declaration_.passes.size()) {
+        const std::string name = pass < pass_names_.size() ? pass_names_[pass] : "";
+        throw GraphError("pass '" + name + "': is complete since the next pass was added; declare all of it before");
+    }
+    return declaration_.passes[pass];
+}
+
+uint32_t Graph::add_access(uint32_t pass, ResourceKind resource_kind, uint32_t resource, uint32_t version,
+                           AccessKind kind, const Contents& contents, VkPipelineStageFlags stages) {
+    PassDeclaration& declared = open_pass(pass);
+    if (resource >= declaration_.resources.size() || declaration_.resources[resource].kind != resource_kind) {
+        throw GraphError("pass '" + pass_names_[pass] + "': uses a handle that no " +
+                         (resource_kind == ResourceKind::image ? "image" : "buffer") + " of this graph has");
+    }
+    Access access{resource, version, kind, is_write(kind) ? contents.kind : ContentsKind::keep, 0};
+    if (has_shader_stages(kind)) {
+        const VkPipelineStageFlags own = declared.kind == PassKind::compute ? kComputeShader : kGraphicsShaders;
+        access.stages = stages == 0 ? own : stages;
+    }
+    check_access(pass, access);
+    const auto index = static_cast<uint32_t>(declaration_.accesses.size());
+    declaration_.accesses.push_back(access);
+    clear_values_.push_back(contents.value);
+    ++declared.access_count;
+    ResourceState& state = states_[resource];
+    state.last_access = index;
+    if (is_write(kind)) {
+        ++state.version;
+        state.has_contents = true;
+        state.last_writer = pass;
+    }
+    return state.version;
+}
+
+void Graph::check_access(uint32_t pass, const Access& access) const {
+    const PassDeclaration& declared = declaration_.passes[pass];
+    if (!allowed(access.kind, declared.kind)) {
+        fail(pass, access.resource,
+             std::string("a ") + describe(declared.kind) + " pass cannot use " + describe(access.kind));
+    }
+    check_feedback(pass, access);
+    const ResourceState& state = states_[access.resource];
+    if (access.version != state.version) {
+        std::string problem = "stale handle";
+        if (access.version < state.version) problem += ": pass '" + pass_names_[state.last_writer] + "' has written it";
+        fail(pass, access.resource, problem + "; use the handle that the last write returned");
+    }
+    check_contents(pass, access);
+    check_format(pass, access);
+}
+
+void Graph::check_contents(uint32_t pass, const Access& access) const {
+    if (access.contents == ContentsKind::clear && !is_attachment(access.kind)) {
+        fail(pass, access.resource, "only attachments can be cleared; clear it in a pass before and keep the contents");
+    }
+    const bool reads = !is_write(access.kind) || access.contents == ContentsKind::keep;
+    if (reads && !states_[access.resource].has_contents) {
+        fail(pass, access.resource,
+             is_write(access.kind) ? "keeps contents that nobody has written; clear or discard them"
+                                   : "is read before anything has written it; add the writing pass before");
+    }
+}
+
+void Graph::check_format(uint32_t pass, const Access& access) const {
+    const ResourceDeclaration& resource = declaration_.resources[access.resource];
+    if (resource.kind != ResourceKind::image) return;
+    const bool depth = is_depth_stencil(resource.image.format);
+    const bool wants_depth =
+        access.kind == AccessKind::depth_stencil_attachment || access.kind == AccessKind::depth_stencil_read;
+    const bool wants_colour =
+        access.kind == AccessKind::colour_attachment || (image_usage(access.kind) & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
+    if ((wants_depth && !depth) || (wants_colour && depth)) {
+        fail(pass, access.resource,
+             std::string("its format cannot be ") + describe(access.kind) +
+                 (depth ? "; it has depth or stencil" : "; it has no depth or stencil"));
+    }
+}
+
+void Graph::check_feedback(uint32_t pass, const Access& access) const {
+    const ResourceState& state = states_[access.resource];
+    const PassDeclaration& declared = declaration_.passes[pass];
+    const bool used = state.last_access != UINT32_MAX && state.last_access >= declared.first_access;
+    if (used) {
+        // One earlier use stands for all: either it is the only one, or they are reads of one layout.
+        const Access& earlier = declaration_.accesses[state.last_access];
+        const VkFormat format = declaration_.resources[access.resource].image.format;
+        if (is_write(earlier.kind) || is_write(access.kind)) {
+            fail(pass, access.resource,
+                 std::string("feedback loop: it is ") + describe(earlier.kind) + " and " + describe(access.kind) +
+                     " in the same pass; use a second pass or a second resource");
+        }
+        if (layout_of(earlier.kind, format) != layout_of(access.kind, format)) {
+            fail(pass, access.resource,
+                 std::string("is ") + describe(earlier.kind) + " and " + describe(access.kind) +
+                     " in the same pass, which need different layouts; read it in one way");
+        }
+    }
+    if (access.kind == AccessKind::depth_stencil_attachment || access.kind == AccessKind::depth_stencil_read) {
+        for (const Access& other : accesses(pass)) {
+            if (other.kind == AccessKind::depth_stencil_attachment || other.kind == AccessKind::depth_stencil_read) {
+                fail(pass, access.resource,
+                     "a pass has one depth-stencil attachment at most, and it has " +
+                         quote_resource(*this, other.resource));
+            }
+        }
+    }
+}
+
+ImageHandle Pass::add(ImageHandle image, AccessKind kind, Contents contents, VkPipelineStageFlags stages) {
+    return {image.resource,
+            graph_->add_access(index_, ResourceKind::image, image.resource, image.version, kind, contents, stages)};
+}
+
+BufferHandle Pass::add(BufferHandle buffer, AccessKind kind, Contents contents, VkPipelineStageFlags stages) {
+    return {buffer.resource,
+            graph_->add_access(index_, ResourceKind::buffer, buffer.resource, buffer.version, kind, contents, stages)};
+}
+
+ImageHandle Pass::colour_attachment(ImageHandle image, Contents contents) {
+    return add(image, AccessKind::colour_attachment, contents, 0);
+}
+ImageHandle Pass::depth_stencil_attachment(ImageHandle image, Contents contents) {
+    return add(image, AccessKind::depth_stencil_attachment, contents, 0);
+}
+void Pass::depth_stencil_read(ImageHandle image) {
+    add(image, AccessKind::depth_stencil_read, Contents::keep(), 0);
+}
+void Pass::input_attachment(ImageHandle image) {
+    add(image, AccessKind::input_attachment, Contents::keep(), 0);
+}
+
+void Pass::sampled(ImageHandle image, VkPipelineStageFlags stages) {
+    add(image, AccessKind::sampled, Contents::keep(), stages);
+}
+void Pass::storage_read(ImageHandle image, VkPipelineStageFlags stages) {
+    add(image, AccessKind::storage_read, Contents::keep(), stages);
+}
+void Pass::storage_read(BufferHandle buffer, VkPipelineStageFlags stages) {
+    add(buffer, AccessKind::storage_read, Contents::keep(), stages);
+}
+ImageHandle Pass::storage_write(ImageHandle image, Contents contents, VkPipelineStageFlags stages) {
+    return add(image, AccessKind::storage_write, contents, stages);
+}
+BufferHandle Pass::storage_write(BufferHandle buffer, Contents contents, VkPipelineStageFlags stages) {
+    return add(buffer, AccessKind::storage_write, contents, stages);
+}
+ImageHandle Pass::storage_read_write(ImageHandle image, VkPipelineStageFlags stages) {
+    return add(image, AccessKind::storage_read_write, Contents::keep(), stages);
+}
+BufferHandle Pass::storage_read_write(BufferHandle buffer, VkPipelineStageFlags stages) {
+    return add(buffer, AccessKind::storage_read_write, Contents::keep(), stages);
+}
+void Pass::uniform_buffer(BufferHandle buffer, VkPipelineStageFlags stages) {
+    add(buffer, AccessKind::uniform, Contents::keep(), stages);
+}
+void Pass::vertex_buffer(BufferHandle buffer) {
+    add(buffer, AccessKind::vertex, Contents::keep(), 0);
+}
+void Pass::index_buffer(BufferHandle buffer) {
+    add(buffer, AccessKind::index, Contents::keep(), 0);
+}
+void Pass::indirect_buffer(BufferHandle buffer) {
+    add(buffer, AccessKind::indirect, Contents::keep(), 0);
+}
+
+void Pass::transfer_read(ImageHandle image) {
+    add(image, AccessKind::transfer_read, Contents::keep(), 0);
+}
+void Pass::transfer_read(BufferHandle buffer) {
+    add(buffer, AccessKind::transfer_read, Contents::keep(), 0);
+}
+ImageHandle Pass::transfer_write(ImageHandle image, Contents contents) {
+    return add(image, AccessKind::transfer_write, contents, 0);
+}
+BufferHandle Pass::transfer_write(BufferHandle buffer, Contents contents) {
+    return add(buffer, AccessKind::transfer_write, contents, 0);
+}
+
+void Pass::side_effect() {
+    graph_->open_pass(index_).side_effect = true;
+}
+
+void Pass::record(RecordFunction function) {
+    graph_->open_pass(index_);
+    graph_->functions_[index_] = std::move(function);
+}
+
+}  // namespace splice::graph

@@ -11,7 +11,8 @@ namespace {
 // Vertices with more triangles are neither moved nor moved onto, which bounds the work of a collapse.
 constexpr std::uint32_t kMaxDegree = 128;
 
-// A collapse may turn no triangle by more than 78 degrees, and none away from its vertices' original normals.
+// A collapse may turn no triangle by more than 78 degrees, neither from what it was nor from the mean of its vertices'
+// normals in the finest level.
 constexpr double kMinCosine = 0.2;
 
 // Added to the squared distance, as shares of the squared edge length. On flat ground all quadrics are zero: the first
@@ -301,8 +302,9 @@ bool PatchSimplifier::turns_no_triangle(Index vertex, Index target) const {
         // Triangles thinner than 1/1000 of their longest side are refused, too.
         const double longest = std::max(edge.squaredNorm(), (new_place - position_[a]).squaredNorm());
         const double length = new_normal.norm();
+        const Vec3d original = normal_[a] + normal_[b] + normal_[target];
         turns = length <= 1e-3 * longest || new_normal.dot(old_normal) < kMinCosine * length * old_normal.norm() ||
-                new_normal.dot(normal_[a] + normal_[b] + normal_[target]) <= 0;
+                new_normal.dot(original) < kMinCosine * length * original.norm();
     });
     return !turns;
 }

@@ -11,9 +11,10 @@ namespace {
 // Vertices with more triangles are neither moved nor moved onto, which bounds the work of a collapse.
 constexpr std::uint32_t kMaxDegree = 128;
 
-// A collapse may turn no triangle by more than 78 degrees, neither from what it was nor from the mean of its vertices'
+// A collapse may turn no triangle by more than 78 degrees, nor to more than 60 degrees from the mean of its vertices'
 // normals in the finest level.
 constexpr double kMinCosine = 0.2;
+constexpr double kMinOriginalCosine = 0.5;
 
 // Added to the squared distance, as shares of the squared edge length. On flat ground all quadrics are zero: the first
 // makes short edges go first. A full-scale change of a colour channel, or a normal's change by its own length, counts
@@ -304,7 +305,7 @@ bool PatchSimplifier::turns_no_triangle(Index vertex, Index target) const {
         const double length = new_normal.norm();
         const Vec3d original = normal_[a] + normal_[b] + normal_[target];
         turns = length <= 1e-3 * longest || new_normal.dot(old_normal) < kMinCosine * length * old_normal.norm() ||
-                new_normal.dot(original) < kMinCosine * length * original.norm();
+                new_normal.dot(original) < kMinOriginalCosine * length * original.norm();
     });
     return !turns;
 }

@@ -18,6 +18,23 @@
 #include <memory>
 
 namespace splice {
+namespace {
+
+/// PNM and plain TGA hold their texels as they are, and stb_image would leave those beyond the end of the file
+/// uninitialised.
+bool lacks_raw_texels(std::string_view bytes, int width, int height, int channels) {
+    constexpr std::size_t kTgaHeader = 18;
+    const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (bytes[0] == 'P' && (bytes[1] == '5' || bytes[1] == '6')) {
+        return bytes.size() < texels * static_cast<std::uint64_t>(channels);
+    }
+    const bool other_magic = bytes[0] == 'B' || bytes[0] == '\x89' || bytes[0] == '\xff';
+    if (other_magic || bytes.size() < kTgaHeader) return false;
+    const bool run_length_coded = (bytes[2] & 8) != 0;
+    return !run_length_coded && bytes.size() < kTgaHeader + texels * (static_cast<unsigned char>(bytes[16]) / 8u);
+}
+
+}  // namespace
 
 std::optional<Image> decode_image(std::string_view bytes, std::string& problem) {
     if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
@@ -36,6 +53,10 @@ std::optional<Image> decode_image(std::string_view bytes, std::string& problem) 
     if (texel_bytes > 1032ull * 32 * (bytes.size() + 1024)) {
         problem = std::to_string(width) + " x " + std::to_string(height) + " pixels cannot come from " +
                   std::to_string(bytes.size()) + " bytes";
+        return std::nullopt;
+    }
+    if (lacks_raw_texels(bytes, width, height, channels)) {
+        problem = "cut short";
         return std::nullopt;
     }
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(

@@ -32,7 +32,8 @@ struct RepairReport {
     std::uint64_t isolated_vertices = 0;        // used by no face, dropped
     std::uint64_t nonfinite_vertices = 0;       // NaN or infinite
     std::uint64_t invalid_polygons = 0;         // out-of-range index, fewer than three corners, non-finite vertex
-    std::uint64_t degenerate_triangles = 0;     // zero area or repeated vertex
+    std::uint64_t degenerate_triangles = 0;     // zero area or repeated vertex, dropped
+    std::uint64_t flipped_caps = 0;             // collinear triangles given area by flipping their long edge
     std::uint64_t duplicate_triangles = 0;      // same three vertices
     std::uint64_t flipped_triangles = 0;        // turned to agree with their neighbours, if repair does that
     std::uint64_t computed_normals = 0;         // corners whose normal was missing or unusable
@@ -40,7 +41,8 @@ struct RepairReport {
 };
 
 struct RepairOptions {
-    float crease_angle_degrees = 45.0f;  // computed normals are split where faces meet at more than this
+    // Computed normals are split where faces meet at more than this. Below the 45 degrees at which chamfers are cut.
+    float crease_angle_degrees = 40.0f;
 };
 
 /// By content first, extension second: OBJ, PLY, STL, OFF, SMF, each also gzipped. Throws InputError, SystemError.

@@ -1,5 +1,6 @@
 #include "preprocess/mesh/corner_normals.h"
 #include "preprocess/mesh/edge_table.h"
+#include "preprocess/mesh/flip_caps.h"
 #include "preprocess/mesh/orient_triangles.h"
 #include "preprocess/mesh/read_mesh.h"
 #include "preprocess/mesh/source_mesh_builder.h"
@@ -19,9 +20,11 @@ namespace {
 /// Squares and cubes of coordinates must stay finite; nothing that anybody measured comes near.
 constexpr double kLargestCoordinate = 1e100;
 
+/// False for not-a-number as well.
 bool is_usable(const Vec3d& p) {
-    return p.cwiseAbs().maxCoeff() <= kLargestCoordinate;
-}  // false for NaN as well
+    return std::abs(p.x()) <= kLargestCoordinate && std::abs(p.y()) <= kLargestCoordinate &&
+           std::abs(p.z()) <= kLargestCoordinate;
+}
 
 class Repair {
   public:
@@ -36,8 +39,7 @@ class Repair {
             throw InputError(name_, "", "more than 2^32 face corners or vertices");
         }
         judge_vertices();
-        triangulate();
-        place_in_unit_box();
+        place_in_unit_box(triangulate());
         drop_duplicates();
         renumber_positions();
         orient();
@@ -78,7 +80,8 @@ class Repair {
         return true;
     }
 
-    void triangulate() {
+    /// Returns the box of all valid polygons.
+    UnitBox triangulate() {
         const std::size_t polygons = source_.polygon_begin.size() - 1;
         std::vector<std::uint8_t> valid(polygons, 0);
         UnitBox box;
@@ -116,18 +119,21 @@ class Repair {
                 if (!source_.polygon_material.empty()) materials_.push_back(source_.polygon_material[p]);
             }
         }
+        return box;
     }
 
-    /// Dropping a degenerate triangle may shrink the box, which separates points that were equal before: repeat until
-    /// the box is that of what is left.
-    void place_in_unit_box() {
-        UnitBox box = box_of_triangles();
+    void place_in_unit_box(const UnitBox& first_box) {
+        UnitBox box = box_of_area(first_box.scale());
+        // Dropping a degenerate triangle may shrink the box, which separates points that were equal before: repeat
+        // until the box is that of what is left.
         for (;;) {
             if (!(box.scale() > 0)) throw_nothing_left();
             weld(box);
-            drop_degenerate();
+            resolve_degenerate();
             if (triangles_.empty()) throw_nothing_left();
-            const UnitBox remaining = box_of_triangles();
+            UnitBox remaining;
+            for (const SourceTriangle& t : triangles_)
+                include(t, remaining);
             if (remaining == box) break;
             box = remaining;
         }
@@ -135,12 +141,34 @@ class Repair {
         mesh_.source_offset = box.centre();
     }
 
-    UnitBox box_of_triangles() const {
+    void include(const SourceTriangle& t, UnitBox& box) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            box.include(source_.positions[position_of(t, k)]);
+    }
+
+    /// The box of the triangles that have area as the file gives them; drops the others where they leave it.
+    UnitBox box_of_area(double scale) {
+        std::vector<SourceTriangle> without_area;
         UnitBox box;
         for (const SourceTriangle& t : triangles_) {
-            for (std::size_t k = 0; k < 3; ++k)
-                box.include(source_.positions[position_of(t, k)]);
+            const Vec3d& a = source_.positions[position_of(t, 0)];
+            const Vec3d u = (source_.positions[position_of(t, 1)] - a) / scale;
+            const Vec3d v = (source_.positions[position_of(t, 2)] - a) / scale;
+            if (u.cross(v).isZero(0)) {
+                without_area.push_back(t);
+            } else {
+                include(t, box);
+            }
         }
+        if (without_area.empty()) return box;
+        std::size_t next = 0;
+        report_.degenerate_triangles += keep_triangles([&](std::size_t t) {
+            if (next == without_area.size() || triangles_[t] != without_area[next]) return true;
+            ++next;
+            UnitBox with = box;
+            include(triangles_[t], with);
+            return with == box;
+        });
         return box;
     }
 
@@ -168,33 +196,55 @@ class Repair {
         }
     }
 
-    bool has_area(const Triangle& t) const {
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return false;
-        const Vec3d a = mesh_.positions[t[0]].cast<double>();
-        const Vec3d b = mesh_.positions[t[1]].cast<double>();
-        const Vec3d c = mesh_.positions[t[2]].cast<double>();
-        return (b - a).cross(c - a).squaredNorm() > 0;
-    }
-
+    /// `keep` is asked about each triangle in order.
     template <class Keep>
     std::uint64_t keep_triangles(Keep keep) {
         std::size_t kept = 0;
         for (std::size_t t = 0; t < triangles_.size(); ++t) {
-            if (!keep(mesh_.triangles[t])) continue;
+            if (!keep(t)) continue;
             triangles_[kept] = triangles_[t];
-            mesh_.triangles[kept] = mesh_.triangles[t];
+            if (!mesh_.triangles.empty()) mesh_.triangles[kept] = mesh_.triangles[t];
             if (!materials_.empty()) materials_[kept] = materials_[t];
             ++kept;
         }
         const std::uint64_t dropped = triangles_.size() - kept;
         triangles_.resize(kept);
-        mesh_.triangles.resize(kept);
+        if (!mesh_.triangles.empty()) mesh_.triangles.resize(kept);
         if (!materials_.empty()) materials_.resize(kept);
         return dropped;
     }
 
-    void drop_degenerate() {
-        report_.degenerate_triangles += keep_triangles([&](const Triangle& t) { return has_area(t); });
+    void resolve_degenerate() {
+        report_.degenerate_triangles += keep_triangles([&](std::size_t t) {
+            const Triangle& v = mesh_.triangles[t];
+            return v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+        });
+        // Each round makes at least one cap less; long rows of caps on one edge, which take a round each, are cut
+        // short.
+        constexpr int kRounds = 32;
+        for (int round = 0; round < kRounds; ++round) {
+            const auto flips = find_cap_flips(mesh_.positions, mesh_.triangles);
+            if (flips.empty()) break;
+            for (const CapFlip& flip : flips)
+                flip_cap(flip);
+            report_.flipped_caps += flips.size();
+        }
+        report_.degenerate_triangles +=
+            keep_triangles([&](std::size_t t) { return !has_no_area(mesh_.positions, mesh_.triangles[t]); });
+    }
+
+    void flip_cap(const CapFlip& flip) {
+        const std::size_t cap = flip.cap_corner / 3, beyond = flip.beyond_half_edge / 3;
+        const std::size_t m = flip.cap_corner % 3, x = flip.beyond_half_edge % 3, y = (x + 1) % 3;
+        const auto apply = [&](auto& triangles) {
+            const auto middle = triangles[cap][m];
+            triangles[cap] = triangles[beyond];
+            triangles[cap][x] = middle;
+            triangles[beyond][y] = middle;
+        };
+        apply(mesh_.triangles);
+        apply(triangles_);
+        if (!materials_.empty()) materials_[cap] = materials_[beyond];
     }
 
     void drop_duplicates() {
@@ -203,8 +253,8 @@ class Repair {
         std::vector<std::uint32_t> table(slots, kInvalidIndex);
         std::vector<Triangle> seen;
         seen.reserve(triangles_.size());
-        report_.duplicate_triangles = keep_triangles([&](const Triangle& t) {
-            Triangle sorted = t;
+        report_.duplicate_triangles = keep_triangles([&](std::size_t t) {
+            Triangle sorted = mesh_.triangles[t];
             std::sort(sorted.begin(), sorted.end());
             std::uint64_t hash = sorted[0];
             for (const std::uint32_t index : {sorted[1], sorted[2]}) {

@@ -31,13 +31,14 @@ class RenderPassPlanner {
         for (const uint32_t pass : slice(plan_.order, plan_.groups[group].passes)) {
             add_subpass(pass, render_pass);
         }
-        add_preserved(render_pass);
-        add_dependencies(render_pass);
         for (uint32_t i = 0; i < render_pass.attachments.count; ++i) {
             Attachment& attachment = plan_.attachments[render_pass.attachments.first + i];
             finish_attachment(attachment, group);
             index_[attachment.resource] = none;
         }
+        sort_uses();
+        add_preserved(render_pass);
+        add_dependencies(render_pass);
         plan_.groups[group].render_pass = static_cast<uint32_t>(plan_.render_passes.size());
         plan_.render_passes.push_back(render_pass);
     }
@@ -136,7 +137,6 @@ class RenderPassPlanner {
 
     /// An attachment survives a subpass that does not use it only where it is named.
     void add_preserved(const RenderPass& render_pass) {
-        sort_uses();
         preserved_.clear();
         for (size_t i = 0; i + 1 < uses_.size(); ++i) {
             if (uses_[i].attachment != uses_[i + 1].attachment) continue;
@@ -163,7 +163,6 @@ class RenderPassPlanner {
 
     /// Reads after writes, writes after reads and writes, each attachment on its own; then one dependency a pair.
     void add_dependencies(RenderPass& render_pass) {
-        sort_uses();
         found_.clear();
         size_t write = SIZE_MAX, first_read = 0;  // the last write of this attachment, and the first read since
         for (size_t i = 0; i < uses_.size(); ++i) {
@@ -172,22 +171,29 @@ class RenderPassPlanner {
                 write = SIZE_MAX;
                 first_read = i;
             }
-            const auto depend_on = [&](const SubpassUse& earlier) {
+            const auto depend_on = [&](const SubpassUse& earlier, const Scope& scope) {
                 if (earlier.subpass == use.subpass) return;
-                found_.push_back({earlier.subpass,
-                                  use.subpass,
-                                  {earlier.scope.stages, write_access(earlier.scope.access)},
-                                  use.scope});
+                found_.push_back(
+                    {earlier.subpass, use.subpass, {earlier.scope.stages, write_access(earlier.scope.access)}, scope});
             };
-            if (!use.write) {
-                if (write != SIZE_MAX) depend_on(uses_[write]);
+            const bool reads_before = first_read < i;
+            if (use.write) {
+                for (size_t read = first_read; read < i; ++read)
+                    depend_on(uses_[read], use.scope);
+                if (!reads_before && write != SIZE_MAX) depend_on(uses_[write], use.scope);
+                write = i;
+                first_read = i + 1;
                 continue;
             }
+            if (write != SIZE_MAX) depend_on(uses_[write], use.scope);
+            const bool last = i + 1 == uses_.size() || uses_[i + 1].attachment != use.attachment;
+            if (!last || !reads_before) continue;
+            // The store at the end of the last subpass is a write too, which earlier readers come before.
+            const Attachment& attachment = plan_.attachments[render_pass.attachments.first + use.attachment];
+            const Scope store = store_scope(resource(attachment.resource).image.format, attachment.store);
+            if (store.stages == 0) continue;
             for (size_t read = first_read; read < i; ++read)
-                depend_on(uses_[read]);
-            if (first_read == i && write != SIZE_MAX) depend_on(uses_[write]);
-            write = i;
-            first_read = i + 1;
+                depend_on(uses_[read], store);
         }
         std::stable_sort(found_.begin(), found_.end(), [](const SubpassDependency& a, const SubpassDependency& b) {
             return a.source != b.source ? a.source < b.source : a.destination < b.destination;

@@ -90,7 +90,7 @@ struct BufferDescription {
 
 /// What the world outside of the frame does with an imported resource.
 struct ExternalUse {
-    Scope scope;
+    Scope scope = {};
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< images: the layout it is in, or is left in
     friend bool operator==(const ExternalUse&, const ExternalUse&) = default;
 };
@@ -216,9 +216,9 @@ enum class ResourceKind : uint8_t { image, buffer };
 struct ResourceDeclaration {
     ResourceKind kind = ResourceKind::image;
     bool imported = false;
-    ImageDescription image;    ///< images
-    BufferDescription buffer;  ///< buffers
-    ImportOptions import;      ///< imported resources
+    ImageDescription image = {};    ///< images
+    BufferDescription buffer = {};  ///< buffers
+    ImportOptions import = {};      ///< imported resources
     friend bool operator==(const ResourceDeclaration&, const ResourceDeclaration&) = default;
 };
 

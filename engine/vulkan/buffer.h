@@ -19,7 +19,7 @@ struct BufferOptions {
     uint64_t size = 0;             ///< bytes; 0 is rounded up to 4, so that an empty section still binds
     VkBufferUsageFlags usage = 0;  ///< device memory adds TRANSFER_DST and TRANSFER_SRC
     MemoryUse memory = MemoryUse::device;
-    std::string name;
+    std::string name = {};
 };
 
 class Buffer {

@@ -18,7 +18,7 @@
 namespace splice::gpu {
 
 struct DeviceOptions {
-    DeviceChoice choice;
+    DeviceChoice choice = {};
     /// Upload through staging buffers even where device memory is mapped, so that a software rasteriser can test that
     /// path.
     bool force_staging = false;

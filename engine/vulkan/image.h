@@ -27,7 +27,7 @@ struct ImageOptions {
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     VkImageUsageFlags usage = 0;
     MemoryUse memory = MemoryUse::device;
-    std::string name;
+    std::string name = {};
 };
 
 /// A 2D image, optimally tiled. Views are 2D arrays only when layers > 1.

@@ -42,7 +42,7 @@ class PipelineLayout {
 /// std::bit_cast<uint32_t>.
 struct ShaderStage {
     const ShaderModule* module = nullptr;
-    std::map<uint32_t, uint32_t> constants;
+    std::map<uint32_t, uint32_t> constants = {};
 };
 
 /// Blending of one colour attachment.
@@ -63,15 +63,15 @@ struct Blend {
 };
 
 struct GraphicsPipelineOptions {
-    std::string name;
-    ShaderStage vertex;
-    ShaderStage fragment;  ///< no module: depth and stencil only
+    std::string name = {};
+    ShaderStage vertex = {};
+    ShaderStage fragment = {};  ///< no module: depth and stencil only
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkRenderPass render_pass = VK_NULL_HANDLE;
     uint32_t subpass = 0;
 
-    std::vector<VkVertexInputBindingDescription> vertex_bindings;
-    std::vector<VkVertexInputAttributeDescription> vertex_attributes;
+    std::vector<VkVertexInputBindingDescription> vertex_bindings = {};
+    std::vector<VkVertexInputAttributeDescription> vertex_attributes = {};
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     bool primitive_restart = false;
 
@@ -90,9 +90,9 @@ struct GraphicsPipelineOptions {
     VkStencilOpState stencil_front{}, stencil_back{};
 
     /// One a colour attachment of the subpass, in order of location.
-    std::vector<Blend> blends;
+    std::vector<Blend> blends = {};
     /// Beyond viewport and scissor, which are always dynamic.
-    std::vector<VkDynamicState> dynamic_states;
+    std::vector<VkDynamicState> dynamic_states = {};
 };
 
 class GraphicsPipeline {

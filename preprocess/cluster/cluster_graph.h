@@ -21,17 +21,20 @@ class ClusterGraph {
   public:
     explicit ClusterGraph(const FaceGraph& faces);
 
-    std::size_t slots() const { return parent_.size(); }
-    bool alive(std::uint32_t slot) const { return parent_[slot] == slot; }
+    std::size_t slots() const { return slots_.size(); }
+    bool alive(std::uint32_t slot) const { return slots_[slot].parent == slot; }
     /// The slot that a merged cluster went into, lower than its own; a live one's is its own.
-    std::uint32_t merged_into(std::uint32_t slot) const { return parent_[slot]; }
+    std::uint32_t merged_into(std::uint32_t slot) const { return slots_[slot].parent; }
     /// Neighbours in ascending order of slot.
     std::span<const ClusterLink> links(std::uint32_t slot) const {
-        return {arena_.data() + lists_[slot].begin * kQuad, lists_[slot].size};
+        return {arena_.data() + slots_[slot].block * kQuad, slots_[slot].size};
     }
+    /// The length of the border between two neighbours.
+    float border(std::uint32_t a, std::uint32_t b) const;
     /// Counts the merges that touched the slot; what was computed for another version is stale.
-    std::uint32_t version(std::uint32_t slot) const { return version_[slot]; }
-    std::uint32_t node(std::uint32_t slot) const { return node_[slot]; }
+    std::uint32_t version(std::uint32_t slot) const { return slots_[slot].version; }
+    /// The node of the merge tree that stands for the cluster.
+    std::uint32_t node(std::uint32_t slot) const { return slots_[slot].node; }
     const std::vector<format::MergeNode>& tree() const { return tree_; }
     std::vector<format::MergeNode> take_tree() { return std::move(tree_); }
 
@@ -41,22 +44,22 @@ class ClusterGraph {
   private:
     // Lists are blocks of 4 * 2^size_class links in one arena; freed blocks are kept by size.
     static constexpr std::size_t kQuad = 4;
-    struct List {
-        std::uint32_t begin = 0;  // in quads
-        std::uint32_t size = 0;
-        std::uint8_t size_class = 0;
+    struct Slot {
+        std::uint32_t block;  // in units of kQuad links
+        std::uint32_t size;
+        std::uint32_t size_class;
+        std::uint32_t version;
+        std::uint32_t parent;  // the slot itself while alive
+        std::uint32_t node;
     };
-    std::uint32_t allocate(std::uint8_t size_class);
-    void store(std::uint32_t slot, std::span<const ClusterLink> links);
-    void release(List& list);
+    std::uint32_t allocate(std::uint32_t size_class);
+    void release(const Slot& slot);
+    void store(Slot& slot, std::span<const ClusterLink> links);
     void rename_neighbour(std::uint32_t slot, std::uint32_t from, std::uint32_t to);
 
     std::vector<ClusterLink> arena_;
-    std::vector<std::vector<std::uint32_t>> free_;  // by size class
-    std::vector<List> lists_;
-    std::vector<std::uint32_t> parent_;  // slot itself while alive
-    std::vector<std::uint32_t> version_;
-    std::vector<std::uint32_t> node_;  // of the merge tree
+    std::vector<std::vector<std::uint32_t>> free_;  // blocks by size class
+    std::vector<Slot> slots_;
     std::vector<format::MergeNode> tree_;
     std::vector<ClusterLink> merged_;  // scratch
 };

@@ -12,6 +12,8 @@
 #include "preprocess/cluster/selection_auc.h"
 #include "preprocess/model_format/error.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -26,10 +28,12 @@ constexpr double kThesisPhase2Cost = 1.8;
 constexpr double kThesisMaxArea = 5.69;  // median triangle areas
 
 // Geometric mode.
+constexpr double kPhase2Cost = 0.9;
 constexpr double kMaxAreaShare = 0.002;  // of the surface that is not made of larger triangles
 constexpr double kMinMaxArea = 16;       // median triangle areas, so that coarse meshes still form patches
 constexpr float kMaxSpread = 0.1745f;    // radians, 10 degrees
-constexpr double kPhase2Cost = 0.9;
+constexpr float kCrumb = 0.125f;         // of the largest area
+constexpr float kCrumbSlack = 1.25f;     // how far a patch may outgrow the largest area by taking in crumbs
 
 class Stopwatch {
   public:
@@ -45,17 +49,29 @@ class Stopwatch {
 };
 
 void check(const ClusterOptions& options) {
-    const auto in = [](const std::optional<double>& x, double low, double high) {
+    const auto within = [](const std::optional<double>& x, double low, double high) {
         return !x || (*x >= low && *x <= high);
     };
-    if (!in(options.triangle_share, 0, 1)) throw UsageError("triangle share must be from 0 to 1");
-    if (!in(options.max_patch_area, std::numeric_limits<double>::min(), 1)) {
+    if (!within(options.triangle_share, 0, 1)) throw UsageError("triangle share must be from 0 to 1");
+    if (!within(options.max_patch_area, std::numeric_limits<double>::min(), 1)) {
         throw UsageError("largest patch area must be above 0 and at most 1, a share of the surface");
     }
     for (const auto& cost : {options.phase1_cost, options.phase2_cost}) {
         if (cost && std::isnan(*cost)) throw UsageError("cost thresholds must be numbers");
     }
 }
+
+/// The options, with every default resolved for this mesh.
+struct Settings {
+    bool thesis, hybrid;
+    std::optional<double> share;
+    float phase1_cost, phase2_cost;
+    float max_area;  // unit-box units^2
+    std::uint32_t max_faces;
+
+    /// The surface is divided by score, not by what phase two touches.
+    bool scored() const { return hybrid && (!thesis || share); }
+};
 
 float median_area(const FaceGraph& faces) {
     std::vector<float> areas = faces.area;
@@ -71,43 +87,85 @@ double total_area(const FaceGraph& faces, double largest = std::numeric_limits<d
     return sum;
 }
 
-/// A floor of two triangles must not decide how finely the statue on it is cut: triangles above the limit don't count.
-float max_patch_area(const FaceGraph& faces, const ClusterOptions& options) {
+double max_patch_area(const FaceGraph& faces, const ClusterOptions& options) {
     const double total = total_area(faces);
-    const double median = static_cast<double>(median_area(faces));
-    if (options.max_patch_area) return static_cast<float>(*options.max_patch_area * total);
-    if (options.selection == Selection::kThesis) return static_cast<float>(kThesisMaxArea * median);
-    const double counted = total_area(faces, kMaxAreaShare * total);
-    return static_cast<float>(std::max(kMaxAreaShare * counted, kMinMaxArea * median));
+    const auto median = static_cast<double>(median_area(faces));
+    if (options.max_patch_area) return *options.max_patch_area * total;
+    if (options.selection == Selection::kThesis) return kThesisMaxArea * median;
+    // A floor of two triangles must not decide how finely the statue on it is cut.
+    return std::max(kMaxAreaShare * total_area(faces, kMaxAreaShare * total), kMinMaxArea * median);
 }
 
-std::uint32_t max_patch_faces(const FaceGraph& faces, const ClusterOptions& options) {
+Settings resolve(const ClusterOptions& options, const FaceGraph& faces) {
+    Settings settings{};
+    settings.thesis = options.selection == Selection::kThesis;
+    settings.hybrid = options.representation == ForcedRepresentation::kHybrid;
+    if (settings.hybrid) settings.share = options.triangle_share;
+    settings.phase1_cost =
+        static_cast<float>(options.phase1_cost.value_or(settings.thesis ? kThesisPhase1Cost : kNever));
+    settings.phase2_cost =
+        static_cast<float>(options.phase2_cost.value_or(settings.thesis ? kThesisPhase2Cost : kPhase2Cost));
+    settings.max_area = static_cast<float>(max_patch_area(faces, options));
     // A hub that swallows a dense corner of a scene would cost O(n) a merge; a share needs patches that add up to it.
-    const std::size_t limit = options.triangle_share ? std::max<std::size_t>(1, faces.size() / 100)
-                                                     : std::max<std::size_t>(64, faces.size() / 128);
-    return static_cast<std::uint32_t>(limit);
+    const std::size_t max_faces =
+        settings.share ? std::max<std::size_t>(1, faces.size() / 100) : std::max<std::size_t>(64, faces.size() / 128);
+    settings.max_faces = static_cast<std::uint32_t>(max_faces);
+    return settings;
 }
 
-/// The clusters that triangles stay for, by area-weighted mean score, adding up to the share.
-std::vector<std::uint8_t> surfels_by_share(const FaceGraph& faces, const ClusterGraph& graph,
-                                           const std::vector<float>& scores, double share) {
-    const std::vector<std::uint32_t> cluster = cluster_of_slots(graph);
-    std::vector<double> score_sum(faces.size(), 0), area(faces.size(), 0);
-    std::vector<std::uint32_t> count(faces.size(), 0);
-    for (std::size_t s = 0; s < faces.size(); ++s) {
-        score_sum[cluster[s]] += static_cast<double>(scores[s]) * static_cast<double>(faces.area[s]);
-        area[cluster[s]] += static_cast<double>(faces.area[s]);
-        ++count[cluster[s]];
+struct Clusters {
+    ClusterGraph graph;
+    ClusterTable table;
+    std::vector<std::uint8_t> surfel;  // by slot: on the rough side, to be drawn as surfels
+};
+
+bool everything(std::uint32_t) {
+    return true;
+}
+
+template <class Tick>
+void run_phase_one(const IndexedMesh& mesh, const FaceGraph& faces, const Settings& settings, float threshold,
+                   Clusters& clusters, const Tick& tick) {
+    if (settings.thesis) {
+        ThesisMetric metric(mesh, faces, clusters.table, settings.max_area);
+        contract(clusters.graph, metric, settings.phase1_cost, 1, everything, tick);
+        return;
     }
+    ClusterLimits limits{settings.max_area, settings.max_faces, kMaxSpread};
+    FlatnessMetric flatness(clusters.table, clusters.surfel, limits);
+    contract(clusters.graph, flatness, settings.phase1_cost, 1, everything, tick);
+    limits.max_area *= kCrumbSlack;
+    CrumbMetric crumbs(clusters.table, clusters.surfel, threshold, limits, kCrumb * settings.max_area);
+    contract(clusters.graph, crumbs, settings.phase1_cost, 1, everything, tick);
+}
+
+/// The clusters that triangles stay for, by mean score, adding up to the share; the rest become surfels.
+std::vector<std::uint8_t> surfels_by_share(const Clusters& clusters, double share) {
+    const std::size_t slots = clusters.graph.slots();
     std::vector<ScoredPatch> patches;
-    for (std::uint32_t s = 0; s < faces.size(); ++s) {
-        if (graph.alive(s)) patches.push_back({static_cast<float>(score_sum[s] / area[s]), s, count[s]});
+    for (std::uint32_t s = 0; s < slots; ++s) {
+        const Cluster& cluster = clusters.table[s];
+        if (clusters.graph.alive(s)) patches.push_back({cluster.score_sum / cluster.shape.area, s, cluster.faces});
     }
-    const auto target = static_cast<std::uint64_t>(std::llround(share * static_cast<double>(faces.size())));
-    std::vector<std::uint8_t> surfel(faces.size(), 1);
+    const auto target = static_cast<std::uint64_t>(std::llround(share * static_cast<double>(slots)));
+    std::vector<std::uint8_t> surfel(slots, 1);
     for (const std::uint32_t slot : choose_flattest(std::move(patches), target))
         surfel[slot] = 0;
     return surfel;
+}
+
+template <class Tick>
+void run_phase_two(const Settings& settings, Clusters& clusters, const Tick& tick) {
+    ClusterGraph& graph = clusters.graph;
+    const std::size_t before = graph.slots() + graph.tree().size();
+    const bool mark_by_merging = settings.thesis && settings.hybrid && !settings.share;
+    SizeMetric metric(clusters.table, settings.max_area, settings.thesis ? kNever : settings.max_area);
+    contract(
+        graph, metric, settings.phase2_cost, 2,
+        [&](std::uint32_t s) { return mark_by_merging || clusters.surfel[s] != 0; }, tick);
+    if (!mark_by_merging) return;
+    for (std::uint32_t s = 0; s < graph.slots(); ++s)
+        clusters.surfel[s] = graph.node(s) >= before;
 }
 
 }  // namespace
@@ -115,68 +173,49 @@ std::vector<std::uint8_t> surfels_by_share(const FaceGraph& faces, const Cluster
 PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, const Progress& progress) {
     check(options);
     Stopwatch watch;
-    const FaceGraph faces = build_face_graph(mesh);
-    const std::size_t count = faces.size();
-    const bool thesis = options.selection == Selection::kThesis;
-    const float max_area = max_patch_area(faces, options);
-    const auto tick = [&](std::size_t merges) {
-        if (progress) progress("cluster", std::min(1.0, static_cast<double>(merges) / static_cast<double>(count)));
-    };
-
-    // The side of the threshold that each face is on.
-    std::vector<std::uint8_t> surfel(count, options.representation == ForcedRepresentation::kSurfels);
+    FaceGraph faces;
+    Settings settings{};
     std::vector<float> scores;
-    if (options.representation == ForcedRepresentation::kHybrid && (!thesis || options.triangle_share)) {
-        scores = score_faces(faces, measure_roughness(mesh, faces));
-        const float threshold = options.triangle_share ? score_at_share(scores, *options.triangle_share) : kRoughScore;
-        for (std::size_t s = 0; s < count; ++s)
-            surfel[s] = scores[s] > threshold;
-    }
+    FaceAdjacency adjacency;
+    tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh); },
+                         [&] {
+                             faces = order_faces(mesh);
+                             settings = resolve(options, faces);
+                             if (settings.scored()) scores = score_faces(faces, measure_roughness(mesh, faces));
+                         });
+    faces.links = link_faces(mesh, faces, adjacency);
+    adjacency = {};
+    const std::size_t count = faces.size();
+
+    const bool all_surfels = options.representation == ForcedRepresentation::kSurfels;
+    Clusters clusters{ClusterGraph(faces), ClusterTable(faces, scores), std::vector<std::uint8_t>(count, all_surfels)};
+    const float threshold = settings.share ? score_at_share(scores, *settings.share) : kRoughScore;
+    for (std::size_t s = 0; s < scores.size(); ++s)
+        clusters.surfel[s] = scores[s] > threshold;
     const double seconds_prepared = watch.lap();
 
-    ClusterGraph graph(faces);
-    ShapeTable shapes(faces);
-    const auto all = [](std::uint32_t) { return true; };
-    if (thesis) {
-        ThesisMetric metric(mesh, faces, shapes, max_area);
-        contract(graph, metric, static_cast<float>(options.phase1_cost.value_or(kThesisPhase1Cost)), 1, all, tick);
-    } else {
-        FlatnessMetric metric(faces, shapes, surfel, {max_area, max_patch_faces(faces, options), kMaxSpread});
-        contract(graph, metric, static_cast<float>(options.phase1_cost.value_or(kNever)), 1, all, tick);
-    }
-    const std::size_t merges = graph.tree().size();
+    const auto tick = [&](std::size_t) {
+        const double merged = static_cast<double>(clusters.graph.tree().size());
+        if (progress) progress("cluster", merged / static_cast<double>(count));
+    };
+    run_phase_one(mesh, faces, settings, threshold, clusters, tick);
     const double seconds_phase1 = watch.lap();
 
-    const bool choose_all =
-        thesis && !options.triangle_share && options.representation == ForcedRepresentation::kHybrid;
-    if (options.triangle_share && options.representation == ForcedRepresentation::kHybrid) {
-        surfel = surfels_by_share(faces, graph, scores, *options.triangle_share);
-    }
-    const double seconds_selection = watch.lap();
+    if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
+    const double seconds_chosen = watch.lap();
 
-    const auto tick2 = [&](std::size_t n) { tick(merges + n); };
-    if (options.representation != ForcedRepresentation::kTriangles) {
-        SizeMetric metric(shapes, max_area, thesis ? kNever : max_area);
-        const double cost = options.phase2_cost.value_or(thesis ? kThesisPhase2Cost : kPhase2Cost);
-        contract(
-            graph, metric, static_cast<float>(cost), 2, [&](std::uint32_t s) { return choose_all || surfel[s]; },
-            tick2);
-    }
-    if (choose_all) {
-        for (std::uint32_t s = 0; s < count; ++s)
-            surfel[s] = graph.node(s) >= count + merges;
-    }
+    if (options.representation != ForcedRepresentation::kTriangles) run_phase_two(settings, clusters, tick);
     const double seconds_phase2 = watch.lap();
 
-    const std::vector<std::uint32_t> cluster = cluster_of_slots(graph);
-    PatchSet set = assemble_patches(mesh, faces, graph, cluster, surfel);
+    const std::vector<std::uint32_t> cluster_of_slot = cluster_of_slots(clusters.graph);
+    PatchSet set = assemble_patches(mesh, faces, clusters.graph, cluster_of_slot, clusters.surfel);
     std::vector<std::uint8_t> surfel_face(count);
     for (std::size_t s = 0; s < count; ++s)
-        surfel_face[s] = surfel[cluster[s]];
+        surfel_face[s] = clusters.surfel[cluster_of_slot[s]];
     set.stats.selection_auc = measure_selection_auc(mesh, faces, surfel_face);
     set.stats.seconds_phase1 = seconds_phase1;
     set.stats.seconds_phase2 = seconds_phase2;
-    set.stats.seconds_selection = seconds_prepared + seconds_selection + watch.lap();
+    set.stats.seconds_selection = seconds_prepared + seconds_chosen + watch.lap();
     return set;
 }
 

@@ -1,5 +1,5 @@
-// What merging two clusters costs, in the three forms that the phases use (see merge_heap.h for the interface). All are
-// sums of dimensionless terms in unit-box units; smaller merges first.
+// What merging two clusters costs, in the forms that the phases use (see merge_heap.h for the interface). All are sums
+// of dimensionless terms in unit-box units; smaller merges first.
 #pragma once
 
 #include "preprocess/cluster/face_graph.h"
@@ -8,48 +8,65 @@
 #include "preprocess/cluster/shape.h"
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace splice {
 
-/// Shapes of all clusters by slot, with the irregularity that every cost asks for.
-class ShapeTable {
+/// The additive data that every metric asks for, half a cache line a cluster.
+struct alignas(32) Cluster {
+    Shape shape;
+    float irregularity = 1;
+    std::uint32_t faces = 1;
+    Vec3f normal_sum = Vec3f::Zero();  // area weighted
+    float score_sum = 0;               // area weighted, see selection.h
+};
+static_assert(sizeof(Cluster) == 32);
+
+/// All clusters by slot. Both phases work on the same table.
+class ClusterTable {
   public:
-    explicit ShapeTable(const FaceGraph& faces) : entries_(faces.size()) {
-        for (std::size_t s = 0; s < faces.size(); ++s)
-            set(s, {faces.area[s], faces.perimeter[s]});
+    explicit ClusterTable(const FaceGraph& faces, const std::vector<float>& scores = {}) : clusters_(faces.size()) {
+        for (std::size_t s = 0; s < faces.size(); ++s) {
+            const Shape shape{faces.area[s], faces.perimeter[s]};
+            clusters_[s] = {shape, shape.irregularity(), 1, faces.area[s] * faces.normal[s],
+                            scores.empty() ? 0.0f : faces.area[s] * scores[s]};
+        }
     }
-    float area(std::size_t slot) const { return entries_[slot].shape.area; }
-    float cost(std::size_t a, std::size_t b, float length) const {
-        return shape_cost(united(entries_[a].shape, entries_[b].shape, length).irregularity(), entries_[a].irregularity,
-                          entries_[b].irregularity);
+    const Cluster& operator[](std::uint32_t slot) const { return clusters_[slot]; }
+    /// E_shape of merging a and b over a common border of `length`.
+    float shape_cost(std::uint32_t a, std::uint32_t b, float length) const {
+        const Cluster &ca = clusters_[a], &cb = clusters_[b];
+        return splice::shape_cost(united(ca.shape, cb.shape, length).irregularity(), ca.irregularity, cb.irregularity);
     }
-    void merge(std::size_t a, std::size_t b, float length) {
-        set(a, united(entries_[a].shape, entries_[b].shape, length));
+    void merge(std::uint32_t a, std::uint32_t b, float length) {
+        Cluster& into = clusters_[a];
+        const Cluster& gone = clusters_[b];
+        into.shape = united(into.shape, gone.shape, length);
+        into.irregularity = into.shape.irregularity();
+        into.faces += gone.faces;
+        into.normal_sum += gone.normal_sum;
+        into.score_sum += gone.score_sum;
     }
 
   private:
-    struct Entry {
-        Shape shape;
-        float irregularity;
-    };
-    void set(std::size_t slot, const Shape& shape) { entries_[slot] = {shape, shape.irregularity()}; }
-    std::vector<Entry> entries_;
+    std::vector<Cluster> clusters_;
 };
 
 /// Phase one as published: E_fit + E_dir + E_shape, clusters up to `max_area`.
 class ThesisMetric {
   public:
-    ThesisMetric(const IndexedMesh& mesh, const FaceGraph& faces, ShapeTable& shapes, float max_area)
-        : shapes_(shapes), max_area_(max_area), points_(faces.size()), directions_(faces.size()) {
+    ThesisMetric(const IndexedMesh& mesh, const FaceGraph& faces, ClusterTable& clusters, float max_area)
+        : clusters_(clusters), max_area_(max_area), points_(faces.size()), directions_(faces.size()) {
         for (std::size_t s = 0; s < faces.size(); ++s) {
             for (const Vec3f& corner : faces.corners(mesh, s))
                 points_[s] += PointQuadric::of(corner.cast<double>());
-            directions_[s] = DirectionQuadric::of(faces.normal[s].cast<double>(), faces.area[s]);
+            directions_[s] = DirectionQuadric::of(faces.normal[s].cast<double>(), static_cast<double>(faces.area[s]));
         }
     }
     float bound(std::uint32_t a, std::uint32_t b, float length) const {
-        return shapes_.area(a) + shapes_.area(b) > max_area_ ? kNever : shapes_.cost(a, b, length);
+        return clusters_[a].shape.area + clusters_[b].shape.area > max_area_ ? kNever
+                                                                             : clusters_.shape_cost(a, b, length);
     }
     float cost(std::uint32_t a, std::uint32_t b, float bound) const {
         PointQuadric points = points_[a];
@@ -61,13 +78,13 @@ class ThesisMetric {
                                   directions.deviation(plane.normal));
     }
     void merge(std::uint32_t a, std::uint32_t b, float length) {
-        shapes_.merge(a, b, length);
+        clusters_.merge(a, b, length);
         points_[a] += points_[b];
         directions_[a] += directions_[b];
     }
 
   private:
-    ShapeTable& shapes_;
+    ClusterTable& clusters_;
     float max_area_;
     std::vector<PointQuadric> points_;
     std::vector<DirectionQuadric> directions_;
@@ -78,61 +95,85 @@ struct ClusterLimits {
     float max_area;  // unit-box units^2
     std::uint32_t max_faces;
     float max_spread;  // of normals, radians: sqrt(2 (1 - |area-weighted mean of unit normals|))
+
+    bool allow_size(const Cluster& a, const Cluster& b) const {
+        return a.shape.area + b.shape.area <= max_area && a.faces + b.faces <= max_faces;
+    }
+    /// E_turn = (spread / max_spread)^2, the variance of the union's normals; above 1 is not allowed.
+    float turn(const Cluster& a, const Cluster& b) const {
+        const float mean = (a.normal_sum + b.normal_sum).norm() / (a.shape.area + b.shape.area);
+        return std::max(0.0f, 2 * (1 - mean) / (max_spread * max_spread));
+    }
 };
 
-/// Phase one of the geometric selection: E_shape + E_turn, where E_turn = (spread / max_spread)^2, 0 to 1, is the
-/// variance of the normals. Clusters keep within the limits and on their side of the roughness threshold: flat and
-/// rough faces never meet in a cluster.
+/// Phase one of the geometric selection: E_shape + E_turn within the limits. Clusters keep to their side of the
+/// roughness threshold: flat and rough faces never meet in one.
 class FlatnessMetric {
   public:
-    FlatnessMetric(const FaceGraph& faces, ShapeTable& shapes, const std::vector<std::uint8_t>& rough,
-                   const ClusterLimits& limits)
-        : shapes_(shapes), rough_(rough), limits_(limits), clusters_(faces.size()) {
-        for (std::size_t s = 0; s < faces.size(); ++s)
-            clusters_[s] = {faces.area[s] * faces.normal[s], 1};
-    }
+    FlatnessMetric(ClusterTable& clusters, const std::vector<std::uint8_t>& rough, const ClusterLimits& limits)
+        : clusters_(clusters), rough_(rough), limits_(limits) {}
     float bound(std::uint32_t a, std::uint32_t b, float length) const {
-        const float area = shapes_.area(a) + shapes_.area(b);
-        if (area > limits_.max_area || rough_[a] != rough_[b] ||
-            clusters_[a].faces + clusters_[b].faces > limits_.max_faces) {
-            return kNever;
-        }
-        const float mean_length = (clusters_[a].normal_sum + clusters_[b].normal_sum).norm() / area;
-        const float turn = std::max(0.0f, 2 * (1 - mean_length) / (limits_.max_spread * limits_.max_spread));
-        return turn > 1 ? kNever : shapes_.cost(a, b, length) + turn;
+        const Cluster &ca = clusters_[a], &cb = clusters_[b];
+        if (rough_[a] != rough_[b] || !limits_.allow_size(ca, cb)) return kNever;
+        const float turn = limits_.turn(ca, cb);
+        return turn > 1 ? kNever : clusters_.shape_cost(a, b, length) + turn;
+    }
+    static float cost(std::uint32_t, std::uint32_t, float bound) { return bound; }
+    void merge(std::uint32_t a, std::uint32_t b, float length) { clusters_.merge(a, b, length); }
+
+  private:
+    ClusterTable& clusters_;
+    const std::vector<std::uint8_t>& rough_;
+    ClusterLimits limits_;
+};
+
+/// The end of phase one: crumbs, clusters of at most `crumb_area`, join the neighbour they suit best by E_shape. One
+/// whose score is within a factor of two of the threshold may cross it; the union is on the side of its larger part.
+/// Clear cases stay, however small: a narrow flat face of a machined part is drawn as triangles.
+class CrumbMetric {
+  public:
+    CrumbMetric(ClusterTable& clusters, std::vector<std::uint8_t>& rough, float threshold, const ClusterLimits& limits,
+                float crumb_area)
+        : clusters_(clusters), rough_(rough), threshold_(threshold), limits_(limits), crumb_area_(crumb_area) {}
+    float bound(std::uint32_t a, std::uint32_t b, float length) const {
+        const Cluster &ca = clusters_[a], &cb = clusters_[b];
+        const bool a_is_crumb = ca.shape.area < cb.shape.area;
+        const Cluster& crumb = a_is_crumb ? ca : cb;
+        if (crumb.shape.area > crumb_area_ || !limits_.allow_size(ca, cb)) return kNever;
+        const bool into_rough = rough_[a_is_crumb ? b : a] != 0;
+        if (!into_rough && limits_.turn(ca, cb) > 1) return kNever;
+        const float score = crumb.score_sum / crumb.shape.area;
+        const bool doubtful = score >= threshold_ / 2 && score <= threshold_ * 2;
+        return rough_[a] == rough_[b] || doubtful ? clusters_.shape_cost(a, b, length) : kNever;
     }
     static float cost(std::uint32_t, std::uint32_t, float bound) { return bound; }
     void merge(std::uint32_t a, std::uint32_t b, float length) {
-        shapes_.merge(a, b, length);
-        clusters_[a].normal_sum += clusters_[b].normal_sum;
-        clusters_[a].faces += clusters_[b].faces;
+        if (clusters_[a].shape.area < clusters_[b].shape.area) rough_[a] = rough_[b];
+        clusters_.merge(a, b, length);
     }
 
   private:
-    struct Cluster {
-        Vec3f normal_sum = Vec3f::Zero();  // area weighted
-        std::uint32_t faces = 0;
-    };
-    ShapeTable& shapes_;
-    const std::vector<std::uint8_t>& rough_;
+    ClusterTable& clusters_;
+    std::vector<std::uint8_t>& rough_;
+    float threshold_;
     ClusterLimits limits_;
-    std::vector<Cluster> clusters_;
+    float crumb_area_;
 };
 
 /// Phase two: E_shape + E_size, E_size = merged area / `size_unit`, clusters up to `max_area`.
 class SizeMetric {
   public:
-    SizeMetric(ShapeTable& shapes, float size_unit, float max_area)
-        : shapes_(shapes), size_unit_(size_unit), max_area_(max_area) {}
+    SizeMetric(ClusterTable& clusters, float size_unit, float max_area)
+        : clusters_(clusters), size_unit_(size_unit), max_area_(max_area) {}
     float bound(std::uint32_t a, std::uint32_t b, float length) const {
-        const float area = shapes_.area(a) + shapes_.area(b);
-        return area > max_area_ ? kNever : shapes_.cost(a, b, length) + area / size_unit_;
+        const float area = clusters_[a].shape.area + clusters_[b].shape.area;
+        return area > max_area_ ? kNever : clusters_.shape_cost(a, b, length) + area / size_unit_;
     }
     static float cost(std::uint32_t, std::uint32_t, float bound) { return bound; }
-    void merge(std::uint32_t a, std::uint32_t b, float length) { shapes_.merge(a, b, length); }
+    void merge(std::uint32_t a, std::uint32_t b, float length) { clusters_.merge(a, b, length); }
 
   private:
-    ShapeTable& shapes_;
+    ClusterTable& clusters_;
     float size_unit_;
     float max_area_;
 };

@@ -1,7 +1,5 @@
 #include "preprocess/cluster/face_graph.h"
 
-#include "preprocess/mesh/halfedge.h"
-
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
@@ -62,16 +60,14 @@ std::vector<FaceGraph::Link> place_links(const std::vector<FaceGraph::Link>& lin
 
 }  // namespace
 
-FaceGraph build_face_graph(const IndexedMesh& mesh) {
+FaceGraph order_faces(const IndexedMesh& mesh) {
     FaceGraph graph;
     graph.face_of_slot = morton_order(mesh);
     const std::size_t faces = mesh.triangles.size();
-    std::vector<std::uint32_t> slot_of_face(faces);
     graph.area.resize(faces);
     graph.perimeter.resize(faces);
     graph.normal.resize(faces);
     tbb::parallel_for(std::size_t{0}, faces, [&](std::size_t s) {
-        slot_of_face[graph.face_of_slot[s]] = static_cast<std::uint32_t>(s);
         const auto [a, b, c] = graph.corners(mesh, s);
         // Double: the cross product of a sliver cancels in float.
         const Vec3d twice_area = (b - a).cast<double>().cross((c - a).cast<double>());
@@ -80,19 +76,24 @@ FaceGraph build_face_graph(const IndexedMesh& mesh) {
         graph.perimeter[s] = (b - a).norm() + (c - b).norm() + (a - c).norm();
         graph.normal[s] = length > 0 ? Vec3f((twice_area / length).cast<float>()) : Vec3f(Vec3f::UnitZ());
     });
+    return graph;
+}
 
-    const FaceAdjacency adjacency = find_face_adjacency(mesh);
+std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, const FaceGraph& faces,
+                                        const FaceAdjacency& adjacency) {
+    std::vector<std::uint32_t> slot_of_face(faces.size());
+    for (std::uint32_t s = 0; s < faces.size(); ++s)
+        slot_of_face[faces.face_of_slot[s]] = s;
     std::vector<FaceGraph::Link> links;
     links.reserve(adjacency.pairs.size());
     for (const FacePair& pair : adjacency.pairs) {
         const std::uint32_t f0 = pair.face[0], f1 = pair.face[1];
         if (!mesh.triangle_material.empty() && mesh.triangle_material[f0] != mesh.triangle_material[f1]) continue;
         const float length = (mesh.positions[pair.vertex[0]] - mesh.positions[pair.vertex[1]]).norm();
-        links.push_back(
-            {{std::min(slot_of_face[f0], slot_of_face[f1]), std::max(slot_of_face[f0], slot_of_face[f1])}, length});
+        const std::uint32_t s0 = slot_of_face[f0], s1 = slot_of_face[f1];
+        links.push_back({{std::min(s0, s1), std::max(s0, s1)}, length});
     }
-    graph.links = place_links(links, faces);
-    return graph;
+    return place_links(links, faces.size());
 }
 
 }  // namespace splice

@@ -2,6 +2,7 @@
 // are renumbered along a space-filling curve, because clustering 871 k faces in file order is bound by cache misses.
 #pragma once
 
+#include "preprocess/mesh/halfedge.h"
 #include "preprocess/mesh/indexed_mesh.h"
 
 #include <algorithm>
@@ -37,7 +38,11 @@ inline float angle_between(const Vec3f& a, const Vec3f& b) {
     return 2 * std::asin(std::min(1.0f, (a - b).norm() / 2));
 }
 
-/// Deterministic for any number of threads.
-FaceGraph build_face_graph(const IndexedMesh& mesh);
+/// All but the links. Deterministic for any number of threads.
+FaceGraph order_faces(const IndexedMesh& mesh);
+
+/// The links, from the half-edge structure's pairs of faces.
+std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, const FaceGraph& faces,
+                                        const FaceAdjacency& adjacency);
 
 }  // namespace splice

@@ -1,12 +1,12 @@
 // Which parts of a surface are drawn as triangles and which as surfels, by geometry alone.
 //
-// In plain words: a place is rough when the normals within 0.02 of the model's size spread by more than 4 degrees. Two
-// things make a place count as less rough than that. First, its triangles are large: if a ball of that radius holds
+// In plain words: a place is rough when the normals within 0.02 of the model's size spread by more than 4.3 degrees.
+// Two things make a place count as less rough than that. First, its triangles are large: if a ball of that radius holds
 // fewer than 12 of them, the spread is the faceting of a coarse mesh and not detail, and so large a triangle costs less
 // than the surfels that would replace it. Second, it is a flat face that merely ends near a crease or belongs to a thin
 // plate: what faces the same way as the place itself spreads by less than a third of the threshold.
 //
-//   score = min(ball * min(1, n / 12), 3 * sheet)        triangles where score <= 0.07 rad (4.0 degrees)
+//   score = min(ball * min(1, n / 12), 3 * sheet)        triangles where score <= 0.075 rad (4.3 degrees)
 //
 // with ball and sheet as in roughness.h and n = pi 0.02^2 / (area of the triangle). A plain sphere of any fine
 // tessellation scores 1.6 degrees, an edge of a machined part 0, a scan's fur or scales 8 to 30.
@@ -19,7 +19,7 @@
 
 namespace splice {
 
-inline constexpr float kRoughScore = 0.07f;    // radians; above: surfels
+inline constexpr float kRoughScore = 0.075f;   // radians; above: surfels
 inline constexpr float kFewTriangles = 12.0f;  // in a ball of kRoughnessRadius
 inline constexpr float kSheetFactor = 3.0f;
 

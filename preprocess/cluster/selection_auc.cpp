@@ -42,60 +42,61 @@ std::vector<Point> spread_points(const IndexedMesh& mesh, const FaceGraph& faces
     return points;
 }
 
-/// Points bucketed in blocks of one radius, x fastest.
+/// The points again, in blocks of one radius, x fastest: three neighbours in x are one run.
 struct PointGrid {
-    std::vector<std::uint32_t> begin;
-    std::vector<std::uint32_t> order;
+    struct Entry {
+        Vec3f position, normal;
+    };
+    std::vector<std::uint32_t> begin;  // by block, into entries
+    std::vector<Entry> entries;
 
     static std::size_t block(float x) {
         return static_cast<std::size_t>(std::clamp((x + 0.5f) / kRoughnessRadius, 0.0f, kSide - 1.0f));
     }
     static std::size_t index(std::size_t x, std::size_t y, std::size_t z) { return (z * kSide + y) * kSide + x; }
 
-    explicit PointGrid(const std::vector<Point>& points) : begin(kSide * kSide * kSide + 1, 0), order(points.size()) {
+    PointGrid(const FaceGraph& faces, const std::vector<Point>& points)
+        : begin(kSide * kSide * kSide + 1, 0), entries(points.size()) {
         const auto block_of = [](const Vec3f& p) { return index(block(p.x()), block(p.y()), block(p.z())); };
         for (const Point& p : points)
             ++begin[block_of(p.position) + 1];
         for (std::size_t b = 1; b < begin.size(); ++b)
             begin[b] += begin[b - 1];
         std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-        for (std::uint32_t i = 0; i < points.size(); ++i)
-            order[next[block_of(points[i].position)]++] = i;
+        for (const Point& p : points)
+            entries[next[block_of(p.position)]++] = {p.position, faces.normal[p.slot]};
     }
 
     template <class Visit>
-    void for_each_near(const Vec3f& p, const Visit& visit) const {
+    void for_each_within_radius(const Vec3f& p, const Visit& visit) const {
         const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
         const auto high = [](std::size_t i) { return std::min(i + 1, kSide - 1); };
         const std::size_t x = block(p.x()), y = block(p.y()), z = block(p.z());
         for (std::size_t bz = low(z); bz <= high(z); ++bz) {
             for (std::size_t by = low(y); by <= high(y); ++by) {
-                for (std::uint32_t i = begin[index(low(x), by, bz)]; i < begin[index(high(x), by, bz) + 1]; ++i) {
-                    visit(order[i]);
+                const std::uint32_t last = begin[index(high(x), by, bz) + 1];
+                for (std::uint32_t i = begin[index(low(x), by, bz)]; i < last; ++i) {
+                    const bool near = (entries[i].position - p).squaredNorm() <= kRoughnessRadius * kRoughnessRadius;
+                    if (near) visit(entries[i]);
                 }
             }
         }
     }
 };
 
-float roughness_at(const Vec3f& centre, const FaceGraph& faces, const std::vector<Point>& points, const PointGrid& grid,
-                   std::vector<Vec3f>& normals) {
+float roughness_at(const Vec3f& centre, const PointGrid& grid, std::vector<Vec3f>& normals) {
     normals.clear();
-    grid.for_each_near(centre, [&](std::uint32_t i) {
-        if ((points[i].position - centre).squaredNorm() <= kRoughnessRadius * kRoughnessRadius) {
-            normals.push_back(faces.normal[points[i].slot]);
-        }
-    });
+    grid.for_each_within_radius(centre, [&](const PointGrid::Entry& e) { normals.push_back(e.normal); });
     Vec3f mean = Vec3f::Zero();
     for (const Vec3f& n : normals)
         mean += n;
     mean.normalize();
-    double sum = 0;
+    float sum = 0;
     for (const Vec3f& n : normals) {
-        const auto angle = static_cast<double>(angle_between(n, mean));
+        const float angle = angle_between(n, mean);
         sum += angle * angle;
     }
-    return static_cast<float>(std::sqrt(sum / static_cast<double>(normals.size())));
+    return std::sqrt(sum / static_cast<float>(normals.size()));
 }
 
 struct Compared {
@@ -127,13 +128,13 @@ double area_under_curve(std::vector<Compared> compared) {
 double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces,
                              const std::vector<std::uint8_t>& surfel_slot) {
     const std::vector<Point> points = spread_points(mesh, faces);
-    const PointGrid grid(points);
+    const PointGrid grid(faces, points);
     std::vector<Compared> compared((points.size() + kEvery - 1) / kEvery);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, compared.size()), [&](const auto& range) {
         std::vector<Vec3f> normals;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const Point& p = points[i * kEvery];
-            compared[i] = {roughness_at(p.position, faces, points, grid, normals), surfel_slot[p.slot] != 0};
+            compared[i] = {roughness_at(p.position, grid, normals), surfel_slot[p.slot] != 0};
         }
     });
     return area_under_curve(std::move(compared));

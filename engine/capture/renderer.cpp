@@ -87,7 +87,8 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
                               .prefilter = settings.prefilter};
     const DrawListOptions list_options{
         .sides = settings.sides,
-        .draw_triangles = settings.draw_triangles && settings.view != View::kSurfelsOnly && settings.view != View::kSamples,
+        .draw_triangles =
+            settings.draw_triangles && settings.view != View::kSurfelsOnly && settings.view != View::kSamples,
         .draw_surfels = settings.draw_surfels && settings.view != View::kTrianglesOnly,
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,

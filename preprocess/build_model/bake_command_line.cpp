@@ -5,9 +5,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <string>
 
 namespace splice {
@@ -38,6 +40,15 @@ CLI::Validator number_between(double least, double most) {
         return "'" + text + "' is not a number from " + printed(least) + " to " + printed(most);
     };
     return {check, "", "number"};
+}
+
+CLI::Validator integer_between(int least, int most) {
+    const auto check = [least, most](std::string& text) -> std::string {
+        const std::optional<double> value = parse_number(text);
+        if (value && *value >= least && *value <= most && *value == std::floor(*value)) return {};
+        return "'" + text + "' is not a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+    };
+    return {check, "", "integer"};
 }
 
 CLI::Validator any_number() {
@@ -159,15 +170,15 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
                    "spacing, a patch's mean edge length / C")
         ->type_name("adaptive|C")
         ->group(surfels);
-    app.add_option(
-           "--h-min", options.sampling.h_min,
-           "Least spacing, share of the model's longest side, 1e-5..1; default " + printed(options.sampling.h_min))
+    app.add_option("--h-min", options.sampling.h_min,
+                   "Least spacing, share of the model's longest side, 1e-5..1; default 1/" +
+                       printed(std::round(1 / options.sampling.h_min)))
         ->check(number_between(1e-5, 1))
         ->type_name("LENGTH")
         ->group(surfels);
-    app.add_option(
-           "--h-max", options.sampling.h_max,
-           "Largest spacing, share of the model's longest side, 1e-5..1; default " + printed(options.sampling.h_max))
+    app.add_option("--h-max", options.sampling.h_max,
+                   "Largest spacing, share of the model's longest side, 1e-5..1; default 1/" +
+                       printed(std::round(1 / options.sampling.h_max)))
         ->check(number_between(1e-5, 1))
         ->type_name("LENGTH")
         ->group(surfels);
@@ -182,12 +193,12 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
     app.add_option("--lod-levels", options.simplify.levels,
                    "Triangle levels of detail a patch, the finest included, 1..16; default " +
                        std::to_string(options.simplify.levels))
-        ->check(CLI::Range(1, 16))
+        ->check(integer_between(1, 16))
         ->type_name("COUNT")
         ->group(other);
     app.add_option("--threads", options.threads,
                    "Threads, 0..1024; 0 (default): one a core. The output does not depend on it")
-        ->check(CLI::Range(0, 1024))
+        ->check(integer_between(0, 1024))
         ->type_name("COUNT")
         ->group(other);
     app.add_option("--stats", stats, "Write counts, times (seconds) and peak memory (bytes) as JSON")
@@ -196,6 +207,9 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
     app.add_flag("--quiet", command.quiet, "Print errors only")->group(other);
 
     if (!parse_command_line(app, argc, argv)) return std::nullopt;
+    if (command.input.empty()) throw UsageError("INPUT is an empty name (see --help)");
+    if (app.count("--output") != 0 && output.empty()) throw UsageError("--output: an empty name (see --help)");
+    if (app.count("--stats") != 0 && stats.empty()) throw UsageError("--stats: an empty name (see --help)");
 
     command.output = output.empty() ? default_output(command.input) : fs::path(output);
     if (app.count("--stats") != 0) command.stats = stats;
@@ -206,6 +220,9 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
             throw UsageError("--sampling: '" + sampling +
                              "' is neither adaptive nor a number from 0.1 to 64 (see --help)");
     }
+    // One limit alone carries the other's default along.
+    if (app.count("--h-max") == 0) options.sampling.h_max = std::max(options.sampling.h_max, options.sampling.h_min);
+    if (app.count("--h-min") == 0) options.sampling.h_min = std::min(options.sampling.h_min, options.sampling.h_max);
     check_consistency(command);
     return command;
 }

@@ -4,6 +4,7 @@
 #include "preprocess/build_model/build_model.h"
 #include "preprocess/model_format/error.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
@@ -31,7 +32,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
 }
 
 // What makes two models of a scene the same: where they come from and how they are baked.
-using ModelKey = std::tuple<std::string, std::map<std::string, double>, SceneRepresentation, double>;
+using ModelKey = std::tuple<std::string, std::map<std::string, double>, SceneRepresentation, double, double>;
 
 class Loader {
   public:
@@ -44,7 +45,7 @@ class Loader {
         const auto* path = std::get_if<std::filesystem::path>(&model.source);
         const ModelKey key{shape ? "shape " + shape->kind : "file " + path->string(),
                            shape ? shape->parameters : std::map<std::string, double>{}, model.representation,
-                           model.triangle_share.value_or(-1)};
+                           model.triangle_share.value_or(-1), model.max_spacing.value_or(-1)};
         auto& entry = models_[key];
         if (!entry) entry = shape ? bake_shape(model, *shape, scene_name, place + "/shape") : load_file(model, *path);
         return entry;
@@ -65,6 +66,10 @@ class Loader {
                 break;
         }
         options.cluster.triangle_share = model.triangle_share;
+        if (model.max_spacing) {
+            options.sampling.h_max = *model.max_spacing;
+            options.sampling.h_min = std::min(options.sampling.h_min, *model.max_spacing);
+        }
         return options;
     }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <string>
 
 namespace splice {
@@ -30,8 +32,8 @@ Colour heat(double level) {
             byte_of(std::clamp(2 - h, 0.0, 1.0))};
 }
 
-// 3x5 digits, one octal digit a row, the leftmost pixel in the highest bit.
-constexpr std::array<std::array<std::uint8_t, 5>, 10> kDigits{{{7, 5, 5, 5, 7},
+// 3x5 glyphs of 0 to 9 and +, one octal digit a row, the leftmost pixel in the highest bit.
+constexpr std::array<std::array<std::uint8_t, 5>, 11> kGlyphs{{{7, 5, 5, 5, 7},
                                                                {2, 6, 2, 2, 7},
                                                                {7, 1, 7, 4, 7},
                                                                {7, 1, 7, 1, 7},
@@ -40,12 +42,13 @@ constexpr std::array<std::array<std::uint8_t, 5>, 10> kDigits{{{7, 5, 5, 5, 7},
                                                                {7, 4, 7, 5, 7},
                                                                {7, 1, 1, 1, 1},
                                                                {7, 5, 7, 5, 7},
-                                                               {7, 5, 7, 1, 7}}};
+                                                               {7, 5, 7, 1, 7},
+                                                               {0, 2, 7, 2, 0}}};
 
-void write_number(Picture& picture, std::uint32_t x, std::uint32_t y, std::uint32_t scale, std::uint32_t number,
-                  const Colour& ink) {
-    for (const char digit : std::to_string(number)) {
-        const auto& rows = kDigits[static_cast<std::size_t>(digit - '0')];
+void write_label(Picture& picture, std::uint32_t x, std::uint32_t y, std::uint32_t scale, const std::string& label,
+                 const Colour& ink) {
+    for (const char c : label) {
+        const auto& rows = kGlyphs[c == '+' ? 10 : static_cast<std::size_t>(c - '0')];
         for (std::uint32_t row = 0; row < 5 * scale; ++row)
             for (std::uint32_t column = 0; column < 3 * scale; ++column)
                 if ((rows[row / scale] >> (2 - column / scale)) & 1) put(picture, x + column, y + row, ink);
@@ -60,26 +63,41 @@ void fill(Picture& picture, std::uint32_t x, std::uint32_t y, std::uint32_t widt
             put(picture, x + column, y + row, colour);
 }
 
-// A bar from 1 (bottom) to `most` (top) at the left edge, with up to five labels.
-void add_legend(Picture& picture, std::uint32_t most) {
+// A bar from 1 (bottom) to `top` at the left edge, with up to five labels; a + says that some pixels have more.
+void add_legend(Picture& picture, std::uint32_t top, bool more) {
     const std::uint32_t scale = std::max(1u, picture.height / 256);
-    const std::uint32_t margin = 4 * scale, width = 8 * scale, text = 6 * scale;
+    const std::uint32_t margin = 4 * scale, width = 8 * scale, first_row = margin + 3 * scale;
     if (picture.height < 16 * margin) return;
-    const std::uint32_t top = margin + 3 * scale, height = picture.height - 2 * top;
-    const auto digits = static_cast<std::uint32_t>(std::to_string(most).size());
-    fill(picture, 0, 0, 2 * margin + width + scale * (4 * digits + 2), picture.height, {255, 255, 255});
-    for (std::uint32_t row = 0; row < height; ++row) {
-        const double level = height > 1 ? 1.0 - static_cast<double>(row) / (height - 1) : 0;
-        fill(picture, margin, top + row, width, 1, heat(level));
-    }
-    const std::uint32_t steps = std::min(most - 1, 4u);
+    const std::uint32_t height = picture.height - 2 * first_row;
+    const auto characters = static_cast<std::uint32_t>(std::to_string(top).size()) + (more ? 1 : 0);
+    fill(picture, 0, 0, margin + width + scale * (4 * characters + 3), picture.height, {255, 255, 255});
+    for (std::uint32_t row = 0; row < height; ++row)
+        fill(picture, margin, first_row + row, width, 1, heat(1.0 - static_cast<double>(row) / (height - 1)));
+    const std::uint32_t steps = std::min(top - 1, 4u);
     for (std::uint32_t step = 0; step <= steps; ++step) {
-        const std::uint32_t count = steps == 0 ? most : 1 + (most - 1) * step / steps;
-        const double level = most == 1 ? 0 : static_cast<double>(count - 1) / (most - 1);
+        const std::uint32_t count = steps == 0 ? top : 1 + (top - 1) * step / steps;
+        const double level = top == 1 ? 0 : static_cast<double>(count - 1) / (top - 1);
         const auto row = static_cast<std::uint32_t>(std::lround((1 - level) * (height - 1)));
-        write_number(picture, margin + width + 2 * scale, top + row - std::min(text / 2, top + row), scale, count,
-                     {0, 0, 0});
+        write_label(picture, margin + width + 2 * scale, first_row + row - 2 * scale, scale,
+                    std::to_string(count) + (more && count == top ? "+" : ""), {0, 0, 0});
     }
+}
+
+// The count that all but a few pixels stay within, so that outliers do not take the colours from the others.
+std::uint32_t usual_most(std::span<const float> counts) {
+    constexpr double kShare = 0.995;
+    std::vector<float> sorted;
+    std::copy_if(counts.begin(), counts.end(), std::back_inserter(sorted),
+                 [](float count) { return std::isfinite(count) && count >= 1; });
+    if (sorted.empty()) return 0;
+    const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), nth, sorted.end());
+    return static_cast<std::uint32_t>(*nth);
+}
+
+Colour overlap_colour(double count, std::uint32_t top) {
+    if (count == 0) return {160, 160, 160};
+    return heat(top > 1 ? (count - 1) / (top - 1) : 0);
 }
 
 }  // namespace
@@ -93,6 +111,7 @@ Picture picture_of_numbers(View view, std::span<const float> values, std::uint32
         least = std::min(least, std::abs(static_cast<double>(value)));
         most = std::max(most, std::abs(static_cast<double>(value)));
     }
+    const std::uint32_t usual = view == View::kOverlap ? usual_most(values) : 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const auto x = static_cast<std::uint32_t>(i % width), y = static_cast<std::uint32_t>(i / width);
         if (!std::isfinite(values[i])) {
@@ -101,7 +120,7 @@ Picture picture_of_numbers(View view, std::span<const float> values, std::uint32
         }
         const double value = std::abs(static_cast<double>(values[i]));
         if (view == View::kOverlap) {
-            put(picture, x, y, value == 0 ? Colour{160, 160, 160} : heat(most > 1 ? (value - 1) / (most - 1) : 0));
+            put(picture, x, y, overlap_colour(value, usual));
             continue;
         }
         const double nearness = most > least ? (most - value) / (most - least) : 1;
@@ -110,7 +129,7 @@ Picture picture_of_numbers(View view, std::span<const float> values, std::uint32
         put(picture, x, y,
             {byte_of(level), byte_of(surfel ? level * 0.75 : level), byte_of(surfel ? level * 0.45 : level)});
     }
-    if (view == View::kOverlap && most >= 1) add_legend(picture, static_cast<std::uint32_t>(most));
+    if (usual > 0) add_legend(picture, usual, most > usual);
     return picture;
 }
 

@@ -34,14 +34,16 @@ Camera frame_camera(const Box& bounds, const Framing& framing, std::uint32_t wid
     const Box shown = bounds.empty() ? Box{glm::dvec3(-0.5), glm::dvec3(0.5)} : bounds;
     const double radius = std::max(shown.radius(), 1e-12);
     const double aspect = static_cast<double>(width) / static_cast<double>(height);
-    const double usable = std::max(1 - 2 * framing.margin, 0.01) * framing.zoom;  // of the half picture
+    const double usable = std::max(1 - 2 * framing.margin, 0.01);  // of the half picture
 
     Camera camera;
-    camera.fov_y_degrees = framing.fov_y_degrees;
+    // Zooming narrows the field of view, which keeps the perspective and scales the picture exactly.
+    const double tangent = std::tan(glm::radians(framing.fov_y_degrees) / 2);
+    camera.fov_y_degrees = glm::degrees(2 * std::atan(tangent / framing.zoom));
     camera.orthographic = framing.orthographic;
     camera.up = up;
     glm::dvec3 centre = shown.centre();
-    double distance = 4 * radius;
+    double distance = 4 * radius;  // of parallel rays, any will do
     if (framing.orthographic) {
         double half_width = 0, half_height = 0;
         for_each_corner(shown, [&](const glm::dvec3& corner) {
@@ -49,26 +51,33 @@ Camera frame_camera(const Box& bounds, const Framing& framing, std::uint32_t wid
             half_height = std::max(half_height, std::abs(glm::dot(corner - centre, up)));
         });
         const double half = std::max({half_height, half_width / aspect, radius * 1e-3});
-        camera.orthographic_height = 2 * half / usable;
+        camera.orthographic_height = 2 * half / usable / framing.zoom;
     } else {
-        // Each corner at (x, y, z) relative to the centre needs distance >= z + |y| / tangent. The corner that binds
-        // below and above differ, so the sides are balanced by shifting the centre, which takes a few rounds.
-        const double tangent = std::tan(glm::radians(framing.fov_y_degrees) / 2);
+        // A corner at (x, y, z) relative to the centre needs distance >= z + |y| / tangent; at that distance the box's
+        // picture is moved to the middle, which changes the distance, and so on for a few rounds.
         const double tangent_y = tangent * usable, tangent_x = tangent_y * aspect;
-        for (int round = 0; round < 8; ++round) {
-            double left = -1e300, right_side = -1e300, bottom = -1e300, top = -1e300;
+        const auto needed_distance = [&] {
+            double needed = radius * 1e-3;
             for_each_corner(shown, [&](const glm::dvec3& corner) {
                 const glm::dvec3 p = corner - centre;
-                const double x = glm::dot(p, right), y = glm::dot(p, up), z = glm::dot(p, backwards);
-                left = std::max(left, z - x / tangent_x);
-                right_side = std::max(right_side, z + x / tangent_x);
-                bottom = std::max(bottom, z - y / tangent_y);
-                top = std::max(top, z + y / tangent_y);
+                needed = std::max(needed, glm::dot(p, backwards) + std::max(std::abs(glm::dot(p, right)) / tangent_x,
+                                                                            std::abs(glm::dot(p, up)) / tangent_y));
             });
-            centre += right * ((right_side - left) / 2 * tangent_x) + up * ((top - bottom) / 2 * tangent_y);
-            distance = std::max((left + right_side) / 2, (bottom + top) / 2);
+            return needed;
+        };
+        distance = needed_distance();
+        for (int round = 0; round < 12; ++round) {
+            Box picture;
+            for_each_corner(shown, [&](const glm::dvec3& corner) {
+                const glm::dvec3 p = corner - centre;
+                const double depth = std::max(distance - glm::dot(p, backwards), radius * 1e-6);
+                picture.extend({glm::dot(p, right) / depth, glm::dot(p, up) / depth, 0});
+            });
+            // The nearer side moves more than the farther one: less than the whole way keeps from overshooting.
+            const glm::dvec3 middle = picture.centre() * (0.7 * distance);
+            centre += right * middle.x + up * middle.y;
+            distance = needed_distance();
         }
-        distance = std::max(distance, radius * 1e-3);
     }
     camera.target = centre;
     camera.eye = centre + backwards * distance;

@@ -8,8 +8,8 @@ Lighting default_lighting() {
     Lighting lighting;
     Light key;
     key.space = LightSpace::kCamera;
-    key.direction = {0.4, -0.5, -1};
-    key.colour = glm::dvec3(0.85);
+    key.direction = {0.5, -0.6, -1};
+    key.colour = glm::dvec3(0.7);
     lighting.lights.push_back(key);
     return lighting;
 }

@@ -38,7 +38,7 @@ struct Light {
 
 /// Ambient plus Lambert; specular (Blinn-Phong) is off unless asked for.
 struct Lighting {
-    glm::dvec3 ambient{0.2};  // linear
+    glm::dvec3 ambient{0.12};  // linear
     std::vector<Light> lights;
     double specular = 0;    // strength, 0 turns it off
     double shininess = 32;  // Blinn-Phong exponent, >= 1

@@ -84,7 +84,7 @@ ShapeDescription read_shape(const JsonValue& value) {
 }
 
 SceneModel read_model(const JsonValue& value, const std::filesystem::path& folder) {
-    value.expect_members({"file", "shape", "transform", "unit_box", "representation", "triangle_share"});
+    value.expect_members({"file", "shape", "transform", "unit_box", "representation", "triangle_share", "max_spacing"});
     SceneModel model;
     const auto file = value.member("file"), shape = value.member("shape");
     if (file.has_value() == shape.has_value()) value.fail("an object with either \"file\" or \"shape\"");
@@ -104,6 +104,8 @@ SceneModel read_model(const JsonValue& value, const std::filesystem::path& folde
                                                             {"surfels", SceneRepresentation::kSurfels}}});
     if (const auto share = value.member("triangle_share"))
         model.triangle_share = share->number(0, 1, "a number from 0 to 1");
+    if (const auto spacing = value.member("max_spacing"))
+        model.max_spacing = spacing->number(1e-4, 1, "a number from 0.0001 to 1");
     return model;
 }
 

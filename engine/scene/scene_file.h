@@ -32,6 +32,7 @@ struct SceneModel {
     bool unit_box = false;  // first moved and scaled so that its bounding box is centred and its longest side is 1
     SceneRepresentation representation = SceneRepresentation::kHybrid;  // of meshes and shapes, baked on loading
     std::optional<double> triangle_share;                               // the same
+    std::optional<double> max_spacing;                                  // the same: of surfels, unit-box units
 };
 
 struct SceneDescription {

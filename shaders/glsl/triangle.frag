@@ -17,7 +17,7 @@ layout(set = 1, binding = 0) uniform sampler2D diffuse;  // white where a materi
 layout(location = 0) out vec4 out_colour;  // linear; alpha is coverage
 
 void main() {
-    const vec3 texel = texture(diffuse, in_uv).rgb;
+    const vec3 texel = texture(diffuse, in_uv).rgb;  // its derivatives are taken before the control flow parts
     if (WIRES) {
         out_colour = vec4(0.01, 0.02, 0.05, 1);
         return;

@@ -22,10 +22,15 @@ vec3 shade(vec3 albedo, vec3 normal, vec3 position) {
     return albedo * diffuse + frame.specular * highlight;
 }
 
+// A little beyond the horizon, a surface that is seen from behind is the rim of the one that bends away there and is
+// lit with it; turned to the eye, it would be a speck on the silhouette.
+const float HORIZON = -0.25;  // cosine
+
 // Two-sided surfaces show the side that is looked at.
 vec3 face_the_eye(vec3 normal, vec3 position) {
-    const bool away = (instance.flags & INSTANCE_TWO_SIDED) != 0 && dot(normal, towards_eye(position)) < 0;
-    return away ? -normal : normal;
+    const bool turned = (instance.flags & INSTANCE_TWO_SIDED) != 0 &&
+                        dot(normal, normalize(towards_eye(position))) < HORIZON;
+    return turned ? -normal : normal;
 }
 
 // What the views show instead of `albedo`; `patch_number` and `is_surfel` say where the point belongs.
@@ -35,6 +40,7 @@ vec3 view_colour(vec3 albedo, vec3 normal, vec3 position, uint patch_number, boo
         case VIEW_PATCHES: return shade(label_colour(patch_number + instance.first_patch), normal, position);
         case VIEW_REPRESENTATION:
             return shade(is_surfel ? vec3(0.85, 0.32, 0.06) : vec3(0.10, 0.30, 0.75), normal, position);
+        case VIEW_SAMPLES: return shade(vec3(0.85, 0.32, 0.06), normal, position);
         case VIEW_WIREFRAME: return shade(is_surfel ? vec3(0.75, 0.60, 0.45) : vec3(0.85), normal, position);
         default: return shade(albedo, normal, position);
     }

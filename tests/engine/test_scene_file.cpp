@@ -1,0 +1,183 @@
+#include "engine/scene/scene_file.h"
+#include "preprocess/model_format/error.h"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+using namespace splice;
+
+namespace {
+
+std::string complaint(const std::string& text) {
+    try {
+        parse_scene(text, "scene.json", "folder");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+std::string with_model(const std::string& members) {
+    return R"({"models": [{"file": "a.splice")" + (members.empty() ? "" : ", " + members) + "}]}";
+}
+
+std::string with(const std::string& members) {
+    return R"({"models": [{"file": "a.splice"}], )" + members + "}";
+}
+
+}  // namespace
+
+TEST_CASE("a scene is complained about with the path of the offending value") {
+    const std::string big(200, 'x');
+    const std::vector<std::pair<std::string, std::string>> table{
+        {"", "scene.json: line 1: not valid JSON"},
+        {"{\n\"models\": [\n}", "scene.json: line 3: not valid JSON"},
+        {R"({"models": [{"file": "a", "transform": {"scale": 1e999}}]})",
+         "scene.json: not valid JSON: a number is out of range"},
+        {"[]", "scene.json: /: expected an object, got an array of 0"},
+        {"{}", "scene.json: /: member \"models\" is missing"},
+        {R"({"models": []})", "scene.json: /models: expected an array of 1 or more, got an array of 0"},
+        {R"({"models": {}})", "scene.json: /models: expected an array of 1 or more, got an object"},
+        {R"({"models": [3]})", "scene.json: /models/0: expected an object, got 3"},
+        {R"({"models": [{}]})",
+         "scene.json: /models/0: expected an object with either \"file\" or \"shape\", got an object"},
+        {with_model(R"("shape": {"kind": "cube"})"),
+         "scene.json: /models/0: expected an object with either \"file\" or \"shape\", got an object"},
+        {R"({"models": [{"file": 7}]})", "scene.json: /models/0/file: expected a string, got 7"},
+        {R"({"models": [{"shape": {}}]})", "scene.json: /models/0/shape: member \"kind\" is missing"},
+        {R"({"models": [{"shape": {"kind": "cube", "cells": "x"}}]})",
+         "scene.json: /models/0/shape/cells: expected a number, got \"x\""},
+        {with_model(R"("transform": {"scale": -1})"),
+         "scene.json: /models/0/transform/scale: expected a positive number, got -1"},
+        {with_model(R"("transform": {"scale": 0})"),
+         "scene.json: /models/0/transform/scale: expected a positive number, got 0"},
+        {with_model(R"("transform": {"scale": [1, 2, 3]})"),
+         "scene.json: /models/0/transform/scale: expected a positive number, got an array of 3"},
+        {with_model(R"("transform": {"translation": [1, 2]})"),
+         "scene.json: /models/0/transform/translation: expected three numbers, got an array of 2"},
+        {with_model(R"("transform": {"translation": [1, 2, "x"]})"),
+         "scene.json: /models/0/transform/translation/2: expected a number, got \"x\""},
+        {with_model(R"("transform": {"rotation": {"axis": [0, 0, 0], "angle": 1}})"),
+         "scene.json: /models/0/transform/rotation/axis: expected a direction other than zero, got an array of 3"},
+        {with_model(R"("transform": {"rotation": {"axis": [0, 1, 0]}})"),
+         "scene.json: /models/0/transform/rotation: member \"angle\" is missing"},
+        {with_model(R"("colour": 1)"),
+         "scene.json: /models/0/colour: unknown member, expected one of file, shape, transform, unit_box, "
+         "representation, "
+         "triangle_share, max_spacing"},
+        {with_model(R"("unit_box": 1)"), "scene.json: /models/0/unit_box: expected true or false, got 1"},
+        {with_model(R"("representation": "points")"),
+         "scene.json: /models/0/representation: expected one of \"hybrid\", \"triangles\", \"surfels\", got "
+         "\"points\""},
+        {with_model(R"("triangle_share": 1.5)"),
+         "scene.json: /models/0/triangle_share: expected a number from 0 to 1, got 1.5"},
+        {with(R"("camera": {"eye": [0, 0, 1]})"), "scene.json: /camera: member \"target\" is missing"},
+        {with(R"("camera": {"eye": [0, 0, 0], "target": [0, 0, 0]})"),
+         "scene.json: /camera: expected eye and target apart, and up in another direction, got an object"},
+        {with(R"("camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "azimuth": 3})"),
+         "scene.json: /camera/azimuth: expected nothing beside \"eye\", got 3"},
+        {with(R"("camera": {"target": [0, 0, 0]})"),
+         "scene.json: /camera/target: expected \"eye\" beside it, got an array of 3"},
+        {with(R"("camera": {"fov": 180})"),
+         "scene.json: /camera/fov: expected an angle from 1 to 170 degrees, got 180"},
+        {with(R"("camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "orthographic": true})"),
+         "scene.json: /camera: member \"height\" is missing"},
+        {with(R"("camera": {"elevation": 91})"),
+         "scene.json: /camera/elevation: expected an angle from -90 to 90 degrees, got 91"},
+        {with(R"("lighting": {"ambient": -1})"),
+         "scene.json: /lighting/ambient: expected a number that is not negative, got -1"},
+        {with(R"("lighting": {"lights": [{"type": "spot"}]})"),
+         "scene.json: /lighting/lights/0/type: expected one of \"directional\", \"point\", got \"spot\""},
+        {with(R"("lighting": {"lights": [{"type": "directional"}]})"),
+         "scene.json: /lighting/lights/0: member \"direction\" is missing"},
+        {with(R"("lighting": {"lights": [{"type": "point", "position": [0, 0, 0]}]})"),
+         "scene.json: /lighting/lights/0: member \"range\" is missing"},
+        {with(R"("lighting": {"lights": [{"type": "point", "position": [0, 0, 0], "range": 0}]})"),
+         "scene.json: /lighting/lights/0/range: expected a positive number, got 0"},
+        {with(R"("lighting": {"lights": [{"type": "directional", "direction": [0, 0, 1], "colour": "pink"}]})"),
+         "scene.json: /lighting/lights/0/colour: expected a colour like \"#ff8000\", got \"pink\""},
+        {with(R"("background": 3)"),
+         "scene.json: /background: expected a colour like \"#ff8000\", or \"transparent\", got 3"},
+        {with(R"("background": "#12345")"),
+         "scene.json: /background: expected a colour like \"#ff8000\", or \"transparent\", got \"#12345\""},
+        {with(R"("render": {"size": [0, 5]})"),
+         "scene.json: /render/size/0: expected a whole number from 1 to 65536, got 0"},
+        {with(R"("render": {"size": [5, 5.5]})"),
+         "scene.json: /render/size/1: expected a whole number from 1 to 65536, got 5.5"},
+        {with(R"("render": {"size": [5]})"), "scene.json: /render/size: expected an array of 2, got an array of 1"},
+        {with(R"("render": {"view": "nice"})"),
+         "scene.json: /render/view: expected the name of a view, such as \"shaded\", got \"nice\""},
+        {with(R"("render": {"epsilon_scale": -0.5})"),
+         "scene.json: /render/epsilon_scale: expected a number from 0 to 100, got -0.5"},
+        {with(R"("render": {"sides": "both"})"),
+         "scene.json: /render/sides: expected one of \"as-baked\", \"one-sided\", \"two-sided\", got \"both\""},
+        {with("\"a/b~\": 1"),
+         "scene.json: /a~1b~0: unknown member, expected one of models, camera, lighting, background, render"},
+        {R"({"models": [{"file": ")" + big + R"("}], "background": ")" + big + "\"}",
+         "scene.json: /background: expected a colour like \"#ff8000\", or \"transparent\", got \"" +
+             std::string(59, 'x') + "..."},
+    };
+    for (const auto& [text, expected] : table)
+        CHECK(complaint(text) == expected);
+}
+
+TEST_CASE("a scene that says everything is read as it says") {
+    const SceneDescription scene = parse_scene(R"({
+        "models": [
+            {"file": "a.splice", "transform": {"scale": 2, "rotation": {"axis": [0, 0, 2], "angle": 90},
+                                               "translation": [1, 2, 3]}},
+            {"shape": {"kind": "torus-knot", "p": 3}, "unit_box": true, "representation": "surfels",
+             "triangle_share": 0.5}],
+        "camera": {"eye": [0, 0, 5], "target": [0, 0, 0], "up": [1, 0, 0], "fov": 30, "orthographic": true, "height": 4},
+        "lighting": {"ambient": [0.1, 0.2, 0.3], "specular": 0.5, "shininess": 8, "lights": [
+            {"type": "point", "position": [1, 1, 1], "range": 2, "colour": "#ffffff", "intensity": 3},
+            {"type": "directional", "direction": [0, -1, 0], "space": "camera", "colour": 0.5}]},
+        "background": "#f80",
+        "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false}
+    })",
+                                               "scene.json", "folder");
+    REQUIRE(scene.models.size() == 2);
+    CHECK(std::get<std::filesystem::path>(scene.models[0].source) == "folder/a.splice");
+    CHECK(scene.models[0].transform.scale == 2);
+    const glm::dvec3 turned = scene.models[0].transform.rotation * glm::dvec3(1, 0, 0);
+    CHECK(glm::distance(turned, glm::dvec3(0, 1, 0)) < 1e-12);
+    CHECK(scene.models[0].transform.translation == glm::dvec3(1, 2, 3));
+    const auto& shape = std::get<ShapeDescription>(scene.models[1].source);
+    CHECK(shape.kind == "torus-knot");
+    CHECK(shape.parameters == std::map<std::string, double>{{"p", 3}});
+    CHECK(scene.models[1].unit_box);
+    CHECK(scene.models[1].representation == SceneRepresentation::kSurfels);
+    CHECK(scene.models[1].triangle_share == 0.5);
+    REQUIRE(scene.camera);
+    CHECK(scene.camera->orthographic);
+    CHECK(scene.camera->orthographic_height == 4);
+    CHECK(scene.camera->up == glm::dvec3(1, 0, 0));
+    REQUIRE(scene.lighting.lights.size() == 2);
+    CHECK(scene.lighting.lights[0].colour == glm::dvec3(3));
+    CHECK(scene.lighting.lights[1].space == LightSpace::kCamera);
+    CHECK(scene.lighting.ambient == glm::dvec3(0.1, 0.2, 0.3));
+    CHECK(scene.background.colour.g == Approx(0x88 / 255.0));
+    CHECK(scene.width == 320);
+    CHECK(scene.height == 200);
+    CHECK(scene.view == View::kOverlap);
+    CHECK(scene.sides == Sides::kTwoSided);
+    CHECK(scene.epsilon_scale == 1.5);
+    CHECK_FALSE(scene.prefilter);
+}
+
+TEST_CASE("the scene format's example in the documentation is valid") {
+    const SceneDescription scene = parse_scene(R"({
+      "models": [
+        {"file": "bunny.splice", "transform": {"scale": 2, "translation": [0, 1, 0]}},
+        {"shape": {"kind": "torus-knot", "p": 2, "q": 3}, "unit_box": true, "representation": "surfels"}
+      ],
+      "camera": {"azimuth": 30, "elevation": 20},
+      "lighting": {"ambient": 0.2, "lights": [{"type": "directional", "direction": [0, -1, -1]}]},
+      "background": "#d8dee8",
+      "render": {"size": [768, 512], "view": "shaded"}
+    })",
+                                               "scene.json", "");
+    CHECK(scene.models.size() == 2);
+    CHECK_FALSE(scene.camera);
+}

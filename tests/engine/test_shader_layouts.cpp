@@ -1,0 +1,129 @@
+// The structures that C++ and GLSL share are declared twice; here the compiled shaders are reflected and compared with
+// the C++ side, member by member.
+#include "engine/passes/shader_types.h"
+#include "shaders/surfel_attribute_frag.h"
+#include "shaders/surfel_attribute_vert.h"
+#include "shaders/surfel_normalise_frag.h"
+#include "shaders/surfel_visibility_frag.h"
+#include "shaders/surfel_visibility_vert.h"
+#include "shaders/triangle_frag.h"
+#include "shaders/triangle_vert.h"
+
+#include <catch2/catch.hpp>
+#include <spirv_cross/spirv_cross_c.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+using namespace splice;
+
+namespace {
+
+struct Layout {
+    std::size_t size = 0;
+    std::vector<unsigned> offsets;  // of the members in order; shaders are compiled without their names
+};
+
+class Reflection {
+  public:
+    explicit Reflection(std::span<const std::uint32_t> words) {
+        REQUIRE(spvc_context_create(&context_) == SPVC_SUCCESS);
+        spvc_parsed_ir ir = nullptr;
+        REQUIRE(spvc_context_parse_spirv(context_, words.data(), words.size(), &ir) == SPVC_SUCCESS);
+        REQUIRE(spvc_context_create_compiler(context_, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
+                                             &compiler_) == SPVC_SUCCESS);
+    }
+    ~Reflection() { spvc_context_destroy(context_); }
+    Reflection(const Reflection&) = delete;
+    Reflection& operator=(const Reflection&) = delete;
+
+    /// The blocks of this kind. `inside`: of the elements of the runtime array that is their only member.
+    std::vector<Layout> blocks(spvc_resource_type kind, bool inside = false) const {
+        spvc_resources resources = nullptr;
+        REQUIRE(spvc_compiler_create_shader_resources(compiler_, &resources) == SPVC_SUCCESS);
+        const spvc_reflected_resource* list = nullptr;
+        std::size_t count = 0;
+        REQUIRE(spvc_resources_get_resource_list_for_type(resources, kind, &list, &count) == SPVC_SUCCESS);
+        std::vector<Layout> layouts;
+        for (std::size_t i = 0; i < count; ++i) {
+            spvc_type_id id = list[i].base_type_id;
+            if (inside) {
+                const spvc_type outer = spvc_compiler_get_type_handle(compiler_, id);
+                const spvc_type array = spvc_compiler_get_type_handle(compiler_, spvc_type_get_member_type(outer, 0));
+                id = spvc_type_get_base_type_id(array);
+            }
+            layouts.push_back(layout_of(id));
+        }
+        return layouts;
+    }
+
+  private:
+    Layout layout_of(spvc_type_id id) const {
+        const spvc_type type = spvc_compiler_get_type_handle(compiler_, id);
+        Layout layout;
+        REQUIRE(spvc_compiler_get_declared_struct_size(compiler_, type, &layout.size) == SPVC_SUCCESS);
+        for (unsigned i = 0; i < spvc_type_get_num_member_types(type); ++i) {
+            unsigned offset = 0;
+            REQUIRE(spvc_compiler_type_struct_member_offset(compiler_, type, i, &offset) == SPVC_SUCCESS);
+            layout.offsets.push_back(offset);
+        }
+        return layout;
+    }
+
+    spvc_context context_ = nullptr;
+    spvc_compiler compiler_ = nullptr;
+};
+
+std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
+    return {{"surfel_attribute.vert", surfel_attribute_vert},
+            {"surfel_attribute.frag", surfel_attribute_frag},
+            {"surfel_visibility.vert", surfel_visibility_vert},
+            {"surfel_visibility.frag", surfel_visibility_frag},
+            {"surfel_normalise.frag", surfel_normalise_frag},
+            {"triangle.vert", triangle_vert},
+            {"triangle.frag", triangle_frag}};
+}
+
+// Every block of the kind in every shader; at least one shader must have it.
+void expect_everywhere(spvc_resource_type kind, bool inside, const Layout& expected) {
+    int found = 0;
+    for (const auto& [name, words] : shaders()) {
+        CAPTURE(name);
+        for (const Layout& layout : Reflection(words).blocks(kind, inside)) {
+            ++found;
+            CHECK(layout.size == expected.size);
+            CHECK(layout.offsets == expected.offsets);
+        }
+    }
+    CHECK(found > 0);
+}
+
+}  // namespace
+
+#define MEMBER(structure, name) static_cast<unsigned>(offsetof(structure, name))
+
+TEST_CASE("frame uniforms have the layout that the shaders declare") {
+    expect_everywhere(
+        SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, false,
+        {sizeof(FrameUniforms),
+         {MEMBER(FrameUniforms, projection), MEMBER(FrameUniforms, viewport), MEMBER(FrameUniforms, pixel_scale),
+          MEMBER(FrameUniforms, near_plane), MEMBER(FrameUniforms, far_plane), MEMBER(FrameUniforms, orthographic),
+          MEMBER(FrameUniforms, view), MEMBER(FrameUniforms, prefilter), MEMBER(FrameUniforms, ambient),
+          MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess),
+          MEMBER(FrameUniforms, sample_share), MEMBER(FrameUniforms, sample_radius)}});
+}
+
+TEST_CASE("light records have the layout that the shaders declare") {
+    expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true,
+                      {sizeof(LightRecord), {MEMBER(LightRecord, vector), MEMBER(LightRecord, colour)}});
+}
+
+TEST_CASE("instance constants have the layout that the shaders declare") {
+    expect_everywhere(SPVC_RESOURCE_TYPE_PUSH_CONSTANT, false,
+                      {sizeof(InstanceConstants),
+                       {MEMBER(InstanceConstants, model_to_view), MEMBER(InstanceConstants, scale),
+                        MEMBER(InstanceConstants, epsilon_scale), MEMBER(InstanceConstants, flags),
+                        MEMBER(InstanceConstants, first_patch)}});
+}

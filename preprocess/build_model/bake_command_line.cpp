@@ -186,7 +186,8 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
 
     const std::string other = "Other";
     app.add_option("--crease-angle", options.repair.crease_angle_degrees,
-                   "Missing normals are split where faces meet at more than this, degrees, 0..180; default 45")
+                   "Missing normals are split where faces meet at more than this, degrees, 0..180; default " +
+                       printed(static_cast<double>(options.repair.crease_angle_degrees)))
         ->check(number_between(0, 180))
         ->type_name("DEGREES")
         ->group(other);

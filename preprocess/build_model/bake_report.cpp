@@ -22,6 +22,7 @@ constexpr std::array kRepairCounts = {
     RepairCount{"nonfinite_vertices", "vertices that are not finite", &RepairReport::nonfinite_vertices},
     RepairCount{"invalid_polygons", "invalid polygons dropped", &RepairReport::invalid_polygons},
     RepairCount{"degenerate_triangles", "degenerate triangles dropped", &RepairReport::degenerate_triangles},
+    RepairCount{"flipped_caps", "collinear triangles given area", &RepairReport::flipped_caps},
     RepairCount{"duplicate_triangles", "duplicate triangles dropped", &RepairReport::duplicate_triangles},
     RepairCount{"flipped_triangles", "triangles turned to agree with their neighbours",
                 &RepairReport::flipped_triangles},

@@ -150,6 +150,7 @@ Scope store_scope(VkFormat format, VkAttachmentStoreOp store) {
 }
 
 VkImageLayout layout_of(AccessKind kind, VkFormat format) {
+    if (format == VK_FORMAT_UNDEFINED) return VK_IMAGE_LAYOUT_UNDEFINED;
     switch (kind) {
         case AccessKind::colour_attachment:
             return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;

@@ -58,7 +58,8 @@ Scope scope_of(AccessKind kind, VkPipelineStageFlags shader_stages);
 Scope load_scope(VkFormat format, VkAttachmentLoadOp load);
 /// What storing an attachment does when its last subpass ends. DONT_CARE counts as a write, NONE touches nothing.
 Scope store_scope(VkFormat format, VkAttachmentStoreOp store);
-/// The layout that a use needs; depth-stencil images have one layout for all of their reads.
+/// The layout that a use needs; depth-stencil images have one layout for all of their reads. UNDEFINED for buffers,
+/// whose format is UNDEFINED.
 VkImageLayout layout_of(AccessKind kind, VkFormat format);
 VkImageUsageFlags image_usage(AccessKind kind);
 VkBufferUsageFlags buffer_usage(AccessKind kind);

@@ -26,7 +26,7 @@ struct CompileOptions {
     bool merge = true;
     bool alias = true;  ///< transients that never live together may share memory
     /// Called once for each transient resource that the plan uses, its usage flags filled in. Empty: nothing is placed.
-    std::function<MemoryRequirement(uint32_t resource, const PlannedResource& planned)> memory;
+    std::function<MemoryRequirement(uint32_t resource, const PlannedResource& planned)> memory = {};
 };
 
 /// Throws GraphError for what a single declaration call cannot see: attachments of different size or sample count in

@@ -130,10 +130,10 @@ enum class UnmergedReason : uint8_t {
     not_pixel_local,  ///< passes hand `resource` over by other means than attachments
     different_size,   ///< the areas that they render to
     different_samples,
-    clears_attachment,     ///< the later pass clears or discards `resource`, which the earlier one uses
-    different_layouts,     ///< both only read `resource`, but in different layouts
-    pass_between,          ///< `other` must run between them
-    switched_off,          ///< CompileOptions::merge
+    clears_attachment,  ///< the later pass clears or discards `resource`, which the earlier one uses
+    different_layouts,  ///< both only read `resource`, but in different layouts
+    pass_between,       ///< `other` must run between them
+    switched_off,       ///< CompileOptions::merge
 };
 
 /// Why two graphics passes that share an attachment are not in one render pass.

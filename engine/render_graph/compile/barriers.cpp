@@ -84,42 +84,57 @@ class BarrierPlanner {
         Run before;
         if (declared.imported) {
             before.exit = declared.import.before.scope;
-            before.exit_layout = declared.import.before.layout;
+            if (declared.kind == ResourceKind::image) before.exit_layout = declared.import.before.layout;
             before.writes = write_access(before.exit.access) != 0;
         } else {
             if (uses.empty()) return;
             before.exit = previous_occupants(resource);
             before.writes = true;
         }
+        const Run after = declared.imported ? outside(resource, before, uses) : Run{};
         while (!uses.empty()) {
             Run next = first_run(uses);
             if (!next.needs_contents) before.exit_layout = VK_IMAGE_LAYOUT_UNDEFINED;
-            connect(resource, before, next);
             uses = uses.subspan(run_length(uses));
+            const bool joins = uses.empty() && !next.writes && !after.writes && next.exit_layout == after.entry_layout;
+            if (joins) next.entry |= after.entry;  // the readers outside belong to the last run
+            // Without a barrier, the next one must wait for the readers outside as well.
+            if (!connect(resource, before, next)) next.exit.stages |= before.exit.stages;
             before = next;
+            if (joins) return;
         }
-        if (declared.imported) hand_over(resource, before, declared.import.after);
+        if (after.first_group != none) connect(resource, before, after);
     }
 
-    void connect(uint32_t resource, const Run& before, const Run& next) {
+    /// What comes after the frame as a run of its own; no group if nothing does.
+    Run outside(uint32_t resource, const Run& before, std::span<const GroupUse> uses) const {
+        const ResourceDeclaration& declared = compilation_.declaration.resources[resource];
+        const ExternalUse& after = declared.import.after;
+        Run run;
+        if (after == external::none()) return run;
+        run.first_group = static_cast<uint32_t>(compilation_.plan.groups.size());
+        run.entry = after.scope;
+        run.writes = write_access(after.scope.access) != 0;
+        run.entry_layout = after.layout;
+        const bool image = declared.kind == ResourceKind::image;
+        if (!image || after.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+            run.entry_layout = uses.empty() ? before.exit_layout : uses.back().exit_layout;
+        }
+        return run;
+    }
+
+    /// Plans the barrier between two runs if one is needed.
+    bool connect(uint32_t resource, const Run& before, const Run& next) {
         const bool image = compilation_.declaration.resources[resource].kind == ResourceKind::image;
         const bool transition = image && before.exit_layout != next.entry_layout;
-        const bool hazard = before.exit.stages != 0 && (before.writes || next.writes);
-        if (!transition && !hazard) return;
-        place(next.first_group, {resource, waited_for(before.exit), next.entry, before.exit_layout, next.entry_layout});
+        bool hazard = before.writes || next.writes;
+        // Readers outside of the frame made the contents visible to themselves only.
+        hazard = hazard || ((next.entry.stages & ~before.exit.stages) | (next.entry.access & ~before.exit.access)) != 0;
+        if (!transition && (before.exit.stages == 0 || !hazard)) return false;
+        placed_.push_back(
+            {next.first_group, {resource, waited_for(before.exit), next.entry, before.exit_layout, next.entry_layout}});
+        return true;
     }
-
-    void hand_over(uint32_t resource, const Run& last, const ExternalUse& after) {
-        if (after == external::none()) return;
-        Run outside;
-        outside.first_group = static_cast<uint32_t>(compilation_.plan.groups.size());
-        outside.entry = after.scope;
-        outside.entry_layout = after.layout == VK_IMAGE_LAYOUT_UNDEFINED ? last.exit_layout : after.layout;
-        outside.writes = write_access(after.scope.access) != 0;
-        connect(resource, last, outside);
-    }
-
-    void place(uint32_t group, const ImageBarrier& barrier) { placed_.push_back({group, barrier}); }
 
     /// Sorts the barriers, found resource by resource, into batches.
     void distribute() {

@@ -1,0 +1,652 @@
+#include "tests/render_graph/hazard_checker.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace splice::test {
+namespace {
+
+using graph::AccessKind;
+using graph::none;
+
+/// A stage and what it does there.
+struct Step {
+    VkPipelineStageFlags stage;
+    VkAccessFlags reads, writes;
+};
+
+constexpr VkPipelineStageFlags kColour = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+constexpr VkPipelineStageFlags kEarly = VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT;
+constexpr VkPipelineStageFlags kLate = VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+constexpr VkPipelineStageFlags kFragment = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+
+std::vector<Step> shader_steps(VkPipelineStageFlags stages, VkAccessFlags reads, VkAccessFlags writes) {
+    std::vector<Step> steps;
+    for (VkPipelineStageFlags bit = 1; bit != 0; bit <<= 1) {
+        if ((stages & bit) != 0) steps.push_back({bit, reads, writes});
+    }
+    return steps;
+}
+
+std::vector<Step> steps_of(const graph::Access& access) {
+    constexpr VkAccessFlags shader_read = VK_ACCESS_SHADER_READ_BIT, shader_write = VK_ACCESS_SHADER_WRITE_BIT;
+    constexpr VkAccessFlags depth_read = VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+    constexpr VkAccessFlags depth_write = VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    switch (access.kind) {
+        case AccessKind::colour_attachment:
+            return {{kColour, VK_ACCESS_COLOR_ATTACHMENT_READ_BIT, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT}};
+        case AccessKind::depth_stencil_attachment:
+            return {{kEarly, depth_read, depth_write}, {kLate, depth_read, depth_write}};
+        case AccessKind::depth_stencil_read:
+            return {{kEarly, depth_read, 0}, {kLate, depth_read, 0}};
+        case AccessKind::input_attachment:
+            return {{kFragment, VK_ACCESS_INPUT_ATTACHMENT_READ_BIT, 0}};
+        case AccessKind::sampled:
+        case AccessKind::storage_read:
+            return shader_steps(access.stages, shader_read, 0);
+        case AccessKind::storage_write:
+            return shader_steps(access.stages, 0, shader_write);
+        case AccessKind::storage_read_write:
+            return shader_steps(access.stages, shader_read, shader_write);
+        case AccessKind::uniform:
+            return shader_steps(access.stages, VK_ACCESS_UNIFORM_READ_BIT, 0);
+        case AccessKind::vertex:
+            return {{VK_PIPELINE_STAGE_VERTEX_INPUT_BIT, VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT, 0}};
+        case AccessKind::index:
+            return {{VK_PIPELINE_STAGE_VERTEX_INPUT_BIT, VK_ACCESS_INDEX_READ_BIT, 0}};
+        case AccessKind::indirect:
+            return {{VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT, 0}};
+        case AccessKind::transfer_read:
+            return {{VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT, 0}};
+        case AccessKind::transfer_write:
+            return {{VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_ACCESS_TRANSFER_WRITE_BIT}};
+    }
+    return {};
+}
+
+bool writes(const std::vector<Step>& steps) {
+    return std::any_of(steps.begin(), steps.end(), [](const Step& step) { return step.writes != 0; });
+}
+
+bool has_depth(VkFormat format) {
+    return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D16_UNORM ||
+           format == VK_FORMAT_D24_UNORM_S8_UINT;
+}
+
+bool layout_fits(VkImageLayout layout, AccessKind kind, VkFormat format) {
+    switch (kind) {
+        case AccessKind::colour_attachment:
+            return layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        case AccessKind::depth_stencil_attachment:
+            return layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+        case AccessKind::depth_stencil_read:
+            return layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+        case AccessKind::input_attachment:
+        case AccessKind::sampled:
+            return layout == (has_depth(format) ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
+                                                : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        case AccessKind::transfer_read:
+            return layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        case AccessKind::transfer_write:
+            return layout == VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        default:
+            return layout == VK_IMAGE_LAYOUT_GENERAL;
+    }
+}
+
+/// What one stage did to a resource, and what is known to come after it.
+struct Atom {
+    VkPipelineStageFlags stage = 0;
+    VkAccessFlags writes = 0;  // 0: a read
+    uint32_t subpass = none;   // within the running render pass; none: before it
+    bool available = false;    // writes
+    // What happens after it, and (writes) what sees it: accesses by stage, everywhere from now on and in one subpass.
+    VkPipelineStageFlags after = 0;
+    VkPipelineStageFlags chained = 0;  // stages of finished subpasses that came after it: a barrier may wait for those
+    std::map<VkPipelineStageFlags, VkAccessFlags> visible;
+    std::map<uint32_t, VkPipelineStageFlags> after_in;
+    std::map<uint32_t, std::map<VkPipelineStageFlags, VkAccessFlags>> visible_in;
+};
+
+struct ResourceState {
+    std::vector<Atom> reads, writes;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    uint32_t maker = none;  // the pass that made the contents
+    bool has_contents = false;
+};
+
+class Walker {
+  public:
+    Walker(const graph::Graph& graph, const graph::Plan& plan, const std::vector<uint64_t>& sizes)
+        : graph_(graph), plan_(plan), sizes_(sizes), states_(graph.declaration().resources.size()) {
+        find_expected_makers();
+    }
+
+    std::vector<std::string> walk() {
+        check_order();
+        if (!problems_.empty()) return problems_;
+        for (int frame = 0; frame < 2; ++frame)
+            walk_frame();
+        return problems_;
+    }
+
+  private:
+    void report(uint32_t pass, uint32_t resource, const std::string& problem) {
+        const std::string where = pass == none ? "end of frame" : "pass '" + graph_.pass_name(pass) + "'";
+        problems_.push_back(where + ", " + graph::quote_resource(graph_, resource) + ": " + problem);
+    }
+
+    const graph::ResourceDeclaration& declared(uint32_t resource) const {
+        return graph_.declaration().resources[resource];
+    }
+    bool is_image(uint32_t resource) const { return declared(resource).kind == graph::ResourceKind::image; }
+
+    /// Which pass each access finds the contents of, by the declaration alone.
+    void find_expected_makers() {
+        const auto& passes = graph_.declaration().passes;
+        std::vector<uint32_t> last(states_.size(), none);
+        expected_.resize(graph_.declaration().accesses.size(), none);
+        for (uint32_t pass = 0; pass < passes.size(); ++pass) {
+            for (uint32_t i = 0; i < passes[pass].access_count; ++i) {
+                const graph::Access& access = graph_.declaration().accesses[passes[pass].first_access + i];
+                expected_[passes[pass].first_access + i] = last[access.resource];
+            }
+            for (const graph::Access& access : graph_.accesses(pass)) {
+                if (writes(steps_of(access))) last[access.resource] = pass;
+            }
+        }
+        final_makers_ = last;
+    }
+
+    void check_order() {
+        const auto& passes = graph_.declaration().passes;
+        std::vector<int> seen(passes.size(), 0);
+        uint32_t side_effect = 0;
+        for (const uint32_t pass : plan_.order) {
+            ++seen[pass];
+            if (!passes[pass].side_effect) continue;
+            if (pass < side_effect) problems_.push_back("side effects out of order");
+            side_effect = pass;
+        }
+        for (const graph::CulledPass& culled : plan_.culled)
+            --seen[culled.pass];
+        for (uint32_t pass = 0; pass < passes.size(); ++pass) {
+            const bool culled = std::any_of(plan_.culled.begin(), plan_.culled.end(),
+                                            [&](const graph::CulledPass& c) { return c.pass == pass; });
+            if (seen[pass] != (culled ? -1 : 1)) {
+                problems_.push_back("pass '" + graph_.pass_name(pass) + "' is not exactly once in the order or culled");
+            }
+            if (culled && passes[pass].side_effect) {
+                problems_.push_back("pass '" + graph_.pass_name(pass) + "' has a side effect and was culled");
+            }
+        }
+        size_t next = 0;
+        for (const graph::Group& group : plan_.groups) {
+            if (group.passes.first != next) problems_.push_back("groups do not tile the order");
+            next = size_t{group.passes.first} + group.passes.count;
+        }
+        if (next != plan_.order.size()) problems_.push_back("groups do not tile the order");
+    }
+
+    void walk_frame() {
+        for (uint32_t resource = 0; resource < states_.size(); ++resource) {
+            if (declared(resource).imported) start_imported(resource);
+        }
+        for (const graph::Group& group : plan_.groups) {
+            const uint32_t first_pass = plan_.order[group.passes.first];
+            apply_batch(group.barriers, first_pass);
+            if (group.render_pass == none) {
+                for (const uint32_t pass : slice(plan_.order, group.passes))
+                    use_pass(pass, none);
+            } else {
+                walk_render_pass(plan_.render_passes[group.render_pass], group);
+            }
+        }
+        apply_batch(plan_.final_barriers, none);
+        for (uint32_t resource = 0; resource < states_.size(); ++resource) {
+            if (declared(resource).imported) finish_imported(resource);
+        }
+    }
+
+    void start_imported(uint32_t resource) {
+        ResourceState& state = states_[resource];
+        const graph::ExternalUse& before = declared(resource).import.before;
+        state = {};
+        state.layout = before.layout;
+        state.has_contents = !is_image(resource) || before.layout != VK_IMAGE_LAYOUT_UNDEFINED;
+        for (const Step& step : shader_steps(before.scope.stages, before.scope.access, 0)) {
+            Atom atom;
+            atom.stage = step.stage;
+            atom.writes = before.scope.access & (VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                                                 VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT);
+            (atom.writes != 0 ? state.writes : state.reads).push_back(atom);
+        }
+        if (before.scope.stages == 0 || !state.writes.empty()) return;
+        // Readers before the frame: what they read was made visible to them, to nobody else.
+        Atom seen;
+        seen.writes = VK_ACCESS_MEMORY_WRITE_BIT;
+        seen.available = true;
+        seen.after = before.scope.stages;
+        for (const Step& step : shader_steps(before.scope.stages, 0, 0))
+            seen.visible[step.stage] = before.scope.access;
+        state.writes.push_back(seen);
+    }
+
+    void finish_imported(uint32_t resource) {
+        const graph::ImportOptions& import = declared(resource).import;
+        const ResourceState& state = states_[resource];
+        if (is_image(resource) && import.after.layout != VK_IMAGE_LAYOUT_UNDEFINED &&
+            state.layout != import.after.layout) {
+            report(none, resource, "is not left in the layout asked for");
+        }
+        if (import.after.scope.stages != 0) {
+            check_steps(none, resource, shader_steps(import.after.scope.stages, import.after.scope.access, 0), none);
+        }
+        if (import.wanted && final_makers_[resource] != none &&
+            (!state.has_contents || state.maker != final_makers_[resource])) {
+            report(none, resource, "does not hold what the last pass wrote");
+        }
+    }
+
+    // Barriers
+    // ---------------------------------------------------------------------------------------------------------
+
+    static bool ordered_before(const Atom& atom, VkPipelineStageFlags stages) {
+        if (((atom.stage | atom.after | atom.chained) & stages) != 0) return true;
+        return std::any_of(atom.after_in.begin(), atom.after_in.end(),
+                           [&](const auto& in) { return (in.second & stages) != 0; });
+    }
+
+    static void extend(Atom& atom, const graph::Scope& source, const graph::Scope& destination) {
+        if (!ordered_before(atom, source.stages)) return;
+        if (atom.writes != 0 && (atom.stage & source.stages) != 0 && (atom.writes & ~source.access) == 0) {
+            atom.available = true;
+        }
+        atom.after |= destination.stages;
+        if (!atom.available) return;
+        for (const Step& step : shader_steps(destination.stages, 0, 0)) {
+            atom.visible[step.stage] |= destination.access;
+        }
+    }
+
+    /// Stages wait as a whole, so the barrier orders what was done to resources in the same bytes too.
+    void apply_barrier(uint32_t resource, const graph::Scope& source, const graph::Scope& destination) {
+        std::vector<uint32_t> resources = sharers(resource);
+        resources.push_back(resource);
+        for (const uint32_t each : resources) {
+            for (Atom& atom : states_[each].reads)
+                extend(atom, source, destination);
+            for (Atom& atom : states_[each].writes)
+                extend(atom, source, destination);
+        }
+    }
+
+    /// Resources that share bytes with this one.
+    std::vector<uint32_t> sharers(uint32_t resource) const {
+        std::vector<uint32_t> found;
+        const graph::PlannedResource& a = plan_.resources[resource];
+        if (a.heap == none) return found;
+        for (uint32_t other = 0; other < states_.size(); ++other) {
+            const graph::PlannedResource& b = plan_.resources[other];
+            if (other == resource || b.heap != a.heap) continue;
+            if (a.offset < b.offset + sizes_[other] && b.offset < a.offset + sizes_[resource]) found.push_back(other);
+        }
+        return found;
+    }
+
+    /// The resource begins anew in its memory: whoever else used these bytes must be done, and loses its contents.
+    void take_memory(uint32_t pass, uint32_t resource, const graph::Scope& source) {
+        for (const uint32_t other : sharers(resource)) {
+            ResourceState& state = states_[other];
+            for (const Atom& atom : state.reads) {
+                if (!ordered_before(atom, source.stages)) report(pass, resource, "takes memory that is still read");
+            }
+            for (const Atom& atom : state.writes) {
+                const bool flushed =
+                    atom.available || ((atom.stage & source.stages) != 0 && (atom.writes & ~source.access) == 0);
+                if (!ordered_before(atom, source.stages) || !flushed) {
+                    report(pass, resource, "takes memory that is still written");
+                }
+            }
+            state.has_contents = false;
+            state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        }
+    }
+
+    bool begins_anew(const graph::Plan& plan, uint32_t resource, const graph::BarrierBatch& batch) const {
+        const uint32_t first = plan.resources[resource].lifetime.first_group;
+        return first != none && &plan.groups[first].barriers == &batch;
+    }
+
+    void apply_batch(const graph::BarrierBatch& batch, uint32_t pass) {
+        for (const graph::BufferBarrier& barrier : slice(plan_.buffer_barriers, batch.buffers)) {
+            if (begins_anew(plan_, barrier.resource, batch)) take_memory(pass, barrier.resource, barrier.source);
+            apply_barrier(barrier.resource, barrier.source, barrier.destination);
+        }
+        for (const graph::ImageBarrier& barrier : slice(plan_.image_barriers, batch.images)) {
+            const uint32_t resource = barrier.resource;
+            if (begins_anew(plan_, resource, batch)) take_memory(pass, resource, barrier.source);
+            ResourceState& state = states_[resource];
+            apply_barrier(resource, barrier.source, barrier.destination);
+            if (barrier.old_layout == barrier.new_layout) continue;
+            if (barrier.old_layout != VK_IMAGE_LAYOUT_UNDEFINED && barrier.old_layout != state.layout) {
+                report(pass, resource, "a barrier expects a layout that the image is not in");
+            }
+            for (const Atom& atom : state.reads) {
+                if (!ordered_before(atom, barrier.source.stages)) report(pass, resource, "transition while read");
+            }
+            for (const Atom& atom : state.writes) {
+                if (!ordered_before(atom, barrier.source.stages) || !atom.available) {
+                    report(pass, resource, "transition of contents that are still written");
+                }
+            }
+            if (barrier.old_layout == VK_IMAGE_LAYOUT_UNDEFINED) state.has_contents = false;
+            state.layout = barrier.new_layout;
+            Atom transition;
+            transition.writes = VK_ACCESS_MEMORY_WRITE_BIT;
+            transition.available = true;
+            transition.after = barrier.destination.stages;
+            for (const Step& step : shader_steps(barrier.destination.stages, 0, 0)) {
+                transition.visible[step.stage] = barrier.destination.access;
+            }
+            state.reads.clear();
+            state.writes = {transition};
+        }
+    }
+
+    // Uses
+    // -------------------------------------------------------------------------------------------------------------
+
+    static bool ordered(const Atom& atom, VkPipelineStageFlags stage, uint32_t subpass) {
+        if ((atom.after & stage) != 0) return true;
+        const auto in = atom.after_in.find(subpass);
+        return in != atom.after_in.end() && (in->second & stage) != 0;
+    }
+
+    static bool sees(const Atom& atom, const Step& step, uint32_t subpass) {
+        if (!atom.available) return false;
+        VkAccessFlags visible = 0;
+        if (const auto at = atom.visible.find(step.stage); at != atom.visible.end()) visible |= at->second;
+        if (const auto in = atom.visible_in.find(subpass); in != atom.visible_in.end()) {
+            if (const auto at = in->second.find(step.stage); at != in->second.end()) visible |= at->second;
+        }
+        return ((step.reads | step.writes) & ~visible) == 0;
+    }
+
+    void check_steps(uint32_t pass, uint32_t resource, const std::vector<Step>& steps, uint32_t subpass) {
+        const ResourceState& state = states_[resource];
+        for (const Step& step : steps) {
+            for (const Atom& atom : state.writes) {
+                if (!ordered(atom, step.stage, subpass)) {
+                    report(pass, resource, "is used while it is still written");
+                } else if (!sees(atom, step, subpass)) {
+                    report(pass, resource, "is used before what was written is visible");
+                }
+            }
+            if (step.writes == 0) continue;
+            for (const Atom& atom : state.reads) {
+                if (!ordered(atom, step.stage, subpass)) report(pass, resource, "is written while it is still read");
+            }
+        }
+    }
+
+    void apply_steps(uint32_t resource, const std::vector<Step>& steps, uint32_t subpass) {
+        ResourceState& state = states_[resource];
+        if (writes(steps)) {
+            state.writes.clear();
+            state.reads.clear();
+        }
+        for (const Step& step : steps) {
+            Atom atom;
+            atom.stage = step.stage;
+            atom.writes = step.writes;
+            atom.subpass = subpass;
+            (step.writes != 0 ? state.writes : state.reads).push_back(atom);
+        }
+    }
+
+    /// All uses of one pass; none of them is ordered against another of the same pass.
+    void use_pass(uint32_t pass, uint32_t subpass) {
+        const graph::PassDeclaration& declaration = graph_.declaration().passes[pass];
+        for (uint32_t i = 0; i < declaration.access_count; ++i) {
+            const uint32_t index = declaration.first_access + i;
+            const graph::Access& access = graph_.declaration().accesses[index];
+            const std::vector<Step> steps = steps_of(access);
+            ResourceState& state = states_[access.resource];
+            if (is_image(access.resource) &&
+                !layout_fits(state.layout, access.kind, declared(access.resource).image.format)) {
+                report(pass, access.resource, "is in a layout that does not fit its use");
+            }
+            check_steps(pass, access.resource, steps, subpass);
+            const bool needs = !writes(steps) || access.contents == graph::ContentsKind::keep;
+            if (needs && (!state.has_contents || state.maker != expected_[index])) {
+                report(pass, access.resource, "does not hold the contents that the pass needs");
+            }
+        }
+        for (const graph::Access& access : graph_.accesses(pass)) {
+            const std::vector<Step> steps = steps_of(access);
+            apply_steps(access.resource, steps, subpass);
+            if (writes(steps)) {
+                states_[access.resource].maker = pass;
+                states_[access.resource].has_contents = true;
+            }
+        }
+    }
+
+    // Render passes
+    // ----------------------------------------------------------------------------------------------------
+
+    struct AttachmentUse {
+        uint32_t first = none, last = none;  // subpasses
+        std::map<uint32_t, VkImageLayout> layouts;
+    };
+
+    std::vector<AttachmentUse> attachment_uses(const graph::RenderPass& render_pass, const graph::Group& group) {
+        std::vector<AttachmentUse> uses(render_pass.attachments.count);
+        const auto subpasses = slice(plan_.subpasses, render_pass.subpasses);
+        const auto passes = slice(plan_.order, group.passes);
+        if (subpasses.size() != passes.size()) problems_.push_back("a subpass is missing");
+        for (uint32_t subpass = 0; subpass < subpasses.size(); ++subpass) {
+            const graph::Subpass& planned = subpasses[subpass];
+            if (planned.pass != passes[subpass]) problems_.push_back("subpasses are out of order");
+            std::vector<std::pair<AccessKind, uint32_t>> wanted, found;
+            for (const graph::Access& access : graph_.accesses(planned.pass)) {
+                if (graph::is_attachment(access.kind)) wanted.emplace_back(access.kind, access.resource);
+            }
+            const auto note = [&](graph::Range range, AccessKind kind) {
+                for (const graph::AttachmentReference& reference : slice(plan_.references, range)) {
+                    AttachmentUse& use = uses[reference.attachment];
+                    use.first = std::min(use.first, subpass);
+                    use.last = subpass;
+                    use.layouts[subpass] = reference.layout;
+                    const uint32_t resource =
+                        slice(plan_.attachments, render_pass.attachments)[reference.attachment].resource;
+                    const bool read_only = reference.layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+                    const bool depth = kind == AccessKind::depth_stencil_attachment;
+                    found.emplace_back(depth && read_only ? AccessKind::depth_stencil_read : kind, resource);
+                }
+            };
+            note(planned.colours, AccessKind::colour_attachment);
+            note(planned.inputs, AccessKind::input_attachment);
+            note(planned.depth_stencil, AccessKind::depth_stencil_attachment);
+            std::stable_sort(wanted.begin(), wanted.end(), by_kind);
+            std::stable_sort(found.begin(), found.end(), by_kind);
+            if (wanted != found) problems_.push_back("a subpass does not reference what its pass declares");
+        }
+        return uses;
+    }
+
+    static bool by_kind(const std::pair<AccessKind, uint32_t>& a, const std::pair<AccessKind, uint32_t>& b) {
+        return a.first < b.first;  // within a kind, declaration order is the order of locations and indices
+    }
+
+    static Step load_step(VkFormat format, VkAttachmentLoadOp load) {
+        const bool reads = load == VK_ATTACHMENT_LOAD_OP_LOAD;
+        if (has_depth(format)) {
+            return {kEarly, reads ? VkAccessFlags{VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT} : 0,
+                    reads ? 0 : VkAccessFlags{VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT}};
+        }
+        return {kColour, reads ? VkAccessFlags{VK_ACCESS_COLOR_ATTACHMENT_READ_BIT} : 0,
+                reads ? 0 : VkAccessFlags{VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT}};
+    }
+
+    void walk_render_pass(const graph::RenderPass& render_pass, const graph::Group& group) {
+        const std::vector<AttachmentUse> uses = attachment_uses(render_pass, group);
+        if (!problems_.empty()) return;
+        const auto attachments = slice(plan_.attachments, render_pass.attachments);
+        const auto subpasses = slice(plan_.subpasses, render_pass.subpasses);
+        for (uint32_t i = 0; i < attachments.size(); ++i) {
+            const uint32_t resource = attachments[i].resource;
+            if (attachments[i].initial_layout != states_[resource].layout) {
+                report(subpasses[0].pass, resource, "enters the render pass in another layout than planned");
+            }
+            const graph::ImageDescription& image = declared(resource).image;
+            if (image.width != render_pass.width || image.height != render_pass.height) {
+                report(subpasses[0].pass, resource, "has another size than the render pass");
+            }
+        }
+        for (uint32_t subpass = 0; subpass < subpasses.size(); ++subpass) {
+            for (const graph::SubpassDependency& dependency : slice(plan_.dependencies, render_pass.dependencies)) {
+                if (dependency.destination == subpass) apply_dependency(dependency);
+            }
+            for (uint32_t i = 0; i < attachments.size(); ++i) {
+                if (uses[i].layouts.count(subpass) != 0) enter_subpass(attachments[i], uses[i], subpass, subpasses);
+            }
+            use_pass(subpasses[subpass].pass, subpass);
+            check_preserved(render_pass, uses, subpass);
+            for (uint32_t i = 0; i < attachments.size(); ++i) {
+                if (uses[i].last == subpass) store(attachments[i], subpasses[subpass].pass, subpass);
+            }
+        }
+        for (ResourceState& state : states_) {  // what follows is ordered by stages alone
+            for (Atom& atom : state.reads)
+                leave_render_pass(atom);
+            for (Atom& atom : state.writes)
+                leave_render_pass(atom);
+        }
+        for (const graph::Attachment& attachment : attachments) {
+            if (states_[attachment.resource].layout != attachment.final_layout) {
+                report(subpasses.back().pass, attachment.resource, "leaves the render pass in another layout");
+            }
+        }
+    }
+
+    /// By region and only for the subpasses named, so it extends order and visibility in the later one alone.
+    void apply_dependency(const graph::SubpassDependency& dependency) {
+        const auto extend_in = [&](Atom& atom) {
+            const VkPipelineStageFlags source = dependency.source_scope.stages;
+            const auto in = atom.after_in.find(dependency.source);
+            const bool own = atom.subpass == dependency.source && (atom.stage & source) != 0;
+            const bool chained = in != atom.after_in.end() && (in->second & source) != 0;
+            if (!own && !chained) return;
+            if (own && atom.writes != 0 && (atom.writes & ~dependency.source_scope.access) == 0) atom.available = true;
+            const graph::Scope& destination = dependency.destination_scope;
+            atom.after_in[dependency.destination] |= destination.stages;
+            if (!atom.available) return;
+            for (const Step& step : shader_steps(destination.stages, 0, 0)) {
+                atom.visible_in[dependency.destination][step.stage] |= destination.access;
+            }
+        };
+        for (ResourceState& state : states_) {
+            for (Atom& atom : state.reads)
+                extend_in(atom);
+            for (Atom& atom : state.writes)
+                extend_in(atom);
+        }
+    }
+
+    void enter_subpass(const graph::Attachment& attachment, const AttachmentUse& use, uint32_t subpass,
+                       std::span<const graph::Subpass> subpasses) {
+        const uint32_t resource = attachment.resource, pass = subpasses[subpass].pass;
+        ResourceState& state = states_[resource];
+        const VkFormat format = declared(resource).image.format;
+        if (use.first == subpass) {
+            const Step load = load_step(format, attachment.load);
+            check_steps(pass, resource, {load}, subpass);
+            if (attachment.load != VK_ATTACHMENT_LOAD_OP_LOAD) {
+                // Loading comes before every use in the subpass, without a dependency.
+                apply_steps(resource, {load}, subpass);
+                Atom& atom = state.writes.back();
+                atom.available = true;
+                for (const Step& step :
+                     {Step{kColour, 0, 0}, Step{kEarly, 0, 0}, Step{kLate, 0, 0}, Step{kFragment, 0, 0}}) {
+                    atom.after_in[subpass] |= step.stage;
+                    atom.visible_in[subpass][step.stage] = ~0U;
+                }
+                state.has_contents = false;
+            }
+        }
+        const VkImageLayout layout = use.layouts.at(subpass);
+        if (layout == state.layout) return;
+        // The transition between subpasses is ordered by the dependencies of the attachment's uses.
+        for (const std::vector<Atom>* atoms : {&state.reads, &state.writes}) {
+            for (const Atom& atom : *atoms) {
+                const bool before = atom.subpass == none || atom.after_in.count(subpass) != 0;
+                if (!before || (atom.writes != 0 && !atom.available)) {
+                    report(pass, resource, "changes layout between subpasses without a dependency");
+                }
+            }
+        }
+        state.layout = layout;
+    }
+
+    void check_preserved(const graph::RenderPass& render_pass, const std::vector<AttachmentUse>& uses,
+                         uint32_t subpass) {
+        const graph::Subpass& planned = slice(plan_.subpasses, render_pass.subpasses)[subpass];
+        const auto preserved = slice(plan_.preserved, planned.preserved);
+        for (uint32_t i = 0; i < uses.size(); ++i) {
+            const bool needed =
+                uses[i].first < subpass && subpass < uses[i].last && uses[i].layouts.count(subpass) == 0;
+            const bool named = std::find(preserved.begin(), preserved.end(), i) != preserved.end();
+            if (needed != named) {
+                report(planned.pass, slice(plan_.attachments, render_pass.attachments)[i].resource,
+                       needed ? "is not preserved" : "is preserved for nobody");
+            }
+        }
+    }
+
+    /// Storing comes after every use in the last subpass; uses in subpasses before must be ordered by dependencies.
+    void store(const graph::Attachment& attachment, uint32_t pass, uint32_t subpass) {
+        if (attachment.store == VK_ATTACHMENT_STORE_OP_NONE) return;
+        const uint32_t resource = attachment.resource;
+        ResourceState& state = states_[resource];
+        for (const Atom& atom : state.reads) {
+            if (atom.subpass != subpass && atom.after == 0 && atom.after_in.count(subpass) == 0) {
+                report(pass, resource, "is stored while an earlier subpass still reads it");
+            }
+        }
+        const bool depth = has_depth(declared(resource).image.format);
+        apply_steps(resource,
+                    {{depth ? kLate : kColour, 0,
+                      depth ? VkAccessFlags{VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT}
+                            : VkAccessFlags{VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT}}},
+                    subpass);
+        if (attachment.store == VK_ATTACHMENT_STORE_OP_DONT_CARE) state.has_contents = false;
+    }
+
+    static void leave_render_pass(Atom& atom) {
+        atom.subpass = none;
+        for (const auto& [subpass, stages] : atom.after_in)
+            atom.chained |= stages;
+        atom.after_in.clear();
+        atom.visible_in.clear();
+    }
+
+    const graph::Graph& graph_;
+    const graph::Plan& plan_;
+    const std::vector<uint64_t>& sizes_;
+    std::vector<ResourceState> states_;
+    std::vector<uint32_t> expected_;      // one an access: the pass whose contents it finds
+    std::vector<uint32_t> final_makers_;  // one a resource: the last pass that writes it
+    std::vector<std::string> problems_;
+};
+
+}  // namespace
+
+std::vector<std::string> find_hazards(const graph::Graph& graph, const graph::Plan& plan,
+                                      const std::vector<uint64_t>& sizes) {
+    return Walker(graph, plan, sizes).walk();
+}
+
+}  // namespace splice::test

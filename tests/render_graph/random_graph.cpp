@@ -1,0 +1,251 @@
+#include "tests/render_graph/random_graph.h"
+
+#include <string>
+
+namespace splice::test {
+namespace {
+
+using graph::Contents;
+using graph::PassKind;
+
+class Tape {
+  public:
+    explicit Tape(const std::vector<uint32_t>& numbers) : numbers_(numbers) {}
+    bool done() const { return next_ >= numbers_.size(); }
+    /// 0 .. limit - 1; 0 when the tape has ended.
+    uint32_t take(uint32_t limit) { return done() ? 0 : numbers_[next_++] % limit; }
+
+  private:
+    const std::vector<uint32_t>& numbers_;
+    size_t next_ = 0;
+};
+
+class Declarer {
+  public:
+    Declarer(graph::Graph& graph, const std::vector<uint32_t>& tape) : graph_(graph), tape_(tape) {}
+
+    void run() {
+        const uint32_t images = 2 + tape_.take(7), buffers = 1 + tape_.take(4);
+        for (uint32_t i = 0; i < images; ++i)
+            add_image(i);
+        for (uint32_t i = 0; i < buffers; ++i)
+            add_buffer(i);
+        while (!tape_.done())
+            add_pass();
+    }
+
+  private:
+    graph::ImportOptions import_options(bool image) {
+        using namespace graph::external;
+        const graph::ExternalUse written{{VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
+                                         image ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED};
+        const graph::ExternalUse states[] = {none(), sampled(), transfer_read(), host_read(), written};
+        graph::ImportOptions options;
+        options.before = states[tape_.take(5)];
+        options.after = states[tape_.take(4)];
+        options.wanted = tape_.take(4) != 0;
+        return options;
+    }
+
+    void add_image(uint32_t index) {
+        constexpr VkFormat formats[] = {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                        VK_FORMAT_D32_SFLOAT_S8_UINT, VK_FORMAT_R8G8B8A8_UNORM};
+        graph::ImageDescription description;
+        description.format = formats[tape_.take(4)];
+        description.width = description.height = tape_.take(4) == 0 ? 64 : 128;
+        const std::string name = "image" + std::to_string(index);
+        images_.push_back(tape_.take(4) == 0 ? graph_.import_image(name, description, import_options(true))
+                                             : graph_.create_image(name, description));
+    }
+
+    void add_buffer(uint32_t index) {
+        const std::string name = "buffer" + std::to_string(index);
+        buffers_.push_back(tape_.take(3) == 0 ? graph_.import_buffer(name, {256}, import_options(false))
+                                              : graph_.create_buffer(name, {256}));
+    }
+
+    graph::ImageHandle& some_image() { return images_[tape_.take(static_cast<uint32_t>(images_.size()))]; }
+    graph::BufferHandle& some_buffer() { return buffers_[tape_.take(static_cast<uint32_t>(buffers_.size()))]; }
+    Contents some_contents(bool attachment) {
+        switch (tape_.take(attachment ? 4 : 3)) {
+            case 0:
+                return Contents::discard();
+            case 3:
+                return Contents::clear(graph::clear_colour(0, 0, 0, 0));
+            default:
+                return Contents::keep();
+        }
+    }
+    const graph::ImageDescription& description(graph::ImageHandle image) const {
+        return graph_.declaration().resources[image.resource].image;
+    }
+
+    /// What the declaration refuses is left out: the graph must be as it was before.
+    template <typename Function>
+    void attempt(const Function& function) {
+        try {
+            function();
+        } catch (const graph::GraphError&) {
+        }
+    }
+
+    void add_pass() {
+        const std::string name = "pass" + std::to_string(passes_++);
+        switch (tape_.take(4)) {
+            case 0:
+                add_compute_pass(name);
+                break;
+            case 1:
+                add_transfer_pass(name);
+                break;
+            default:
+                add_graphics_pass(name);
+        }
+    }
+
+    void add_graphics_pass(const std::string& name) {
+        graph::Pass pass = graph_.add_pass(name, PassKind::graphics);
+        // The first attachment sets the size that the others must have.
+        graph::ImageHandle* first = &some_image();
+        const graph::ImageDescription area = description(*first);
+        if (graph::is_depth_stencil(area.format)) {
+            *first = pass.depth_stencil_attachment(*first, Contents::clear(graph::clear_depth_stencil(0, 0)));
+        } else {
+            *first = pass.colour_attachment(*first, Contents::clear(graph::clear_colour(0, 0, 0, 0)));
+        }
+        const uint32_t more = tape_.take(5);
+        for (uint32_t i = 0; i < more; ++i)
+            add_graphics_access(pass, area);
+        if (tape_.take(16) == 0) pass.side_effect();
+    }
+
+    void add_graphics_access(graph::Pass& pass, const graph::ImageDescription& area) {
+        graph::ImageHandle& image = some_image();
+        const uint32_t choice = tape_.take(12);
+        const bool same_size = description(image).width == area.width;
+        if (choice < 8 && !same_size) return;
+        attempt([&] {
+            switch (choice) {
+                case 0:
+                case 1:
+                    image = pass.colour_attachment(image, some_contents(true));
+                    break;
+                case 2:
+                case 3:
+                    image = pass.depth_stencil_attachment(image, some_contents(true));
+                    break;
+                case 4:
+                    pass.depth_stencil_read(image);
+                    break;
+                case 5:
+                case 6:
+                case 7:
+                    pass.input_attachment(image);
+                    break;
+                case 8:
+                    pass.sampled(image, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT);
+                    break;
+                case 9:
+                    pass.vertex_buffer(some_buffer());
+                    break;
+                case 10:
+                    pass.index_buffer(some_buffer());
+                    break;
+                default: {
+                    graph::BufferHandle& buffer = some_buffer();
+                    buffer = pass.storage_write(buffer, some_contents(false));
+                }
+            }
+        });
+    }
+
+    void add_compute_pass(const std::string& name) {
+        graph::Pass pass = graph_.add_pass(name, PassKind::compute);
+        const uint32_t accesses = 1 + tape_.take(4);
+        for (uint32_t i = 0; i < accesses; ++i) {
+            graph::ImageHandle& image = some_image();
+            graph::BufferHandle& buffer = some_buffer();
+            const uint32_t choice = tape_.take(9);
+            attempt([&] {
+                switch (choice) {
+                    case 0:
+                        pass.sampled(image);
+                        break;
+                    case 1:
+                        pass.storage_read(image);
+                        break;
+                    case 2:
+                        image = pass.storage_write(image, some_contents(false));
+                        break;
+                    case 3:
+                        image = pass.storage_read_write(image);
+                        break;
+                    case 4:
+                        pass.storage_read(buffer);
+                        break;
+                    case 5:
+                        buffer = pass.storage_write(buffer, some_contents(false));
+                        break;
+                    case 6:
+                        buffer = pass.storage_read_write(buffer);
+                        break;
+                    case 7:
+                        pass.uniform_buffer(buffer);
+                        break;
+                    default:
+                        pass.indirect_buffer(buffer);
+                }
+            });
+        }
+        if (tape_.take(12) == 0) pass.side_effect();
+    }
+
+    void add_transfer_pass(const std::string& name) {
+        graph::Pass pass = graph_.add_pass(name, PassKind::transfer);
+        const uint32_t accesses = 1 + tape_.take(2);
+        for (uint32_t i = 0; i < accesses; ++i) {
+            graph::ImageHandle& image = some_image();
+            graph::BufferHandle& buffer = some_buffer();
+            const uint32_t choice = tape_.take(4);
+            attempt([&] {
+                switch (choice) {
+                    case 0:
+                        pass.transfer_read(image);
+                        break;
+                    case 1:
+                        image = pass.transfer_write(image, some_contents(false));
+                        break;
+                    case 2:
+                        pass.transfer_read(buffer);
+                        break;
+                    default:
+                        buffer = pass.transfer_write(buffer, some_contents(false));
+                }
+            });
+        }
+    }
+
+    graph::Graph& graph_;
+    Tape tape_;
+    std::vector<graph::ImageHandle> images_;
+    std::vector<graph::BufferHandle> buffers_;
+    uint32_t passes_ = 0;
+};
+
+}  // namespace
+
+void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape) {
+    Declarer(graph, tape).run();
+}
+
+std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed) {
+    std::vector<graph::MemoryRequirement> sizes;
+    for (size_t i = 0; i < graph.declaration().resources.size(); ++i) {
+        seed = seed * 1664525U + 1013904223U;
+        const uint64_t size = (uint64_t{256} << (seed >> 28)) + ((seed >> 8) % 4096);
+        sizes.push_back({size, uint64_t{64} << ((seed >> 20) % 4), (seed >> 10) % 3 == 0 ? 2U : 3U});
+    }
+    return sizes;
+}
+
+}  // namespace splice::test

@@ -1,0 +1,19 @@
+// Random frames for property tests, built from a tape of numbers so that a failing one can shrink.
+#pragma once
+
+#include "engine/render_graph/compile.h"
+#include "engine/render_graph/graph.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace splice::test {
+
+/// Declares a valid frame of at most tape.size() / 4 passes. Everything the graph knows occurs: all kinds of passes and
+/// accesses, imported resources in many states, side effects, images of two sizes and several formats.
+void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape);
+
+/// Made-up sizes of the resources, log-uniform from 256 bytes to 16 MiB, in two memory types.
+std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed);
+
+}  // namespace splice::test

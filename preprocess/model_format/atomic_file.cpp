@@ -6,12 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
 #include <cerrno>
-#include <climits>
-#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -29,34 +25,6 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// A signal handler can reach nothing but statics. Set only while a named temporary file exists.
-std::array<char, PATH_MAX> pending_name{};
-std::atomic<bool> pending{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-constexpr std::array kFatalSignals = {SIGINT, SIGTERM, SIGHUP};
-
-extern "C" void remove_pending_and_die(int signal_number) {
-    if (pending.exchange(false)) unlink(pending_name.data());
-    std::signal(signal_number, SIG_DFL);
-    std::raise(signal_number);
-}
-
-void start_removal_on_signal(const fs::path& name) {
-    const std::string text = fs::absolute(name).string();
-    if (text.size() >= pending_name.size()) fail(name, "cannot create", ENAMETOOLONG);
-    std::copy(text.begin(), text.end(), pending_name.begin());
-    pending_name[text.size()] = '\0';
-    for (const int signal_number : kFatalSignals)
-        std::signal(signal_number, remove_pending_and_die);
-    pending = true;
-}
-
-void stop_removal_on_signal() {
-    pending = false;
-    for (const int signal_number : kFatalSignals)
-        std::signal(signal_number, SIG_DFL);
-}
-
 mode_t default_mode() {
     const mode_t mask = umask(0);
     umask(mask);
@@ -65,13 +33,15 @@ mode_t default_mode() {
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(fs::path path, Storage storage) : path_(std::move(path)) {
     check_output_path(path_);
     std::error_code error;
     if (fs::is_symlink(path_, error) && fs::exists(path_, error)) path_ = fs::canonical(path_);
-    descriptor_ = posix_open::open_unnamed(folder_of(path_).c_str());
-    if (descriptor_ >= 0) return;
-    if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) fail(path_, "cannot create", errno);
+    if (storage == Storage::kUnnamedIfPossible) {
+        descriptor_ = posix_open::open_unnamed(folder_of(path_).c_str());
+        if (descriptor_ >= 0) return;
+        if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) fail(path_, "cannot create", errno);
+    }
     open_named();
 }
 
@@ -79,17 +49,25 @@ void AtomicFile::open_named() {
     std::string pattern = (folder_of(path_) / ("." + path_.filename().string() + ".XXXXXX")).string();
     descriptor_ = mkstemp(pattern.data());
     if (descriptor_ < 0) fail(path_, "cannot create", errno);
-    temporary_ = pattern;
-    start_removal_on_signal(temporary_);
-    fchmod(descriptor_, default_mode());
+    adopt_temporary_name(pattern);
+    if (fchmod(descriptor_, default_mode()) != 0) fail(path_, "cannot create", errno);
 }
 
 AtomicFile::~AtomicFile() {
     if (descriptor_ >= 0) close(descriptor_);
-    if (!temporary_.empty()) {
-        unlink(temporary_.c_str());
-        stop_removal_on_signal();
-    }
+    if (temporary_.empty()) return;
+    unlink(temporary_.c_str());
+    forget_temporary_name();
+}
+
+void AtomicFile::adopt_temporary_name(const fs::path& name) {
+    cleanup_.emplace(name);
+    temporary_ = name;
+}
+
+void AtomicFile::forget_temporary_name() {
+    temporary_.clear();
+    cleanup_.reset();
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -108,15 +86,11 @@ void AtomicFile::name_unnamed() {
     if (link_as(path_)) return;
     if (errno != EEXIST) fail(path_, "cannot create", errno);
     for (unsigned attempt = 0;; ++attempt) {
-        const fs::path name = folder_of(path_) / ("." + path_.filename().string() + "." + std::to_string(getpid()) +
-                                                  "." + std::to_string(attempt));
-        start_removal_on_signal(name);
-        if (link_as(name)) {
-            temporary_ = name;
-            return;
-        }
+        const std::string unique = std::to_string(getpid()) + "." + std::to_string(attempt);
+        adopt_temporary_name(folder_of(path_) / ("." + path_.filename().string() + "." + unique));
+        if (link_as(temporary_)) return;
         const int error = errno;
-        stop_removal_on_signal();
+        forget_temporary_name();
         if (error != EEXIST) fail(path_, "cannot create", error);
     }
 }
@@ -126,8 +100,7 @@ void AtomicFile::commit() {
     if (temporary_.empty()) name_unnamed();
     if (!temporary_.empty()) {
         if (rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "cannot create", errno);
-        temporary_.clear();
-        stop_removal_on_signal();
+        forget_temporary_name();
     }
     if (close(std::exchange(descriptor_, -1)) != 0) fail(path_, "cannot write", errno);
 }

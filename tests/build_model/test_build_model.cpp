@@ -108,6 +108,7 @@ TEST_CASE("a patch's merge root stands for exactly its triangles") {
 
 TEST_CASE("patch bounds hold triangles and disks") {
     const Model model = build(repaired(shapes::bumpy_sphere(3000)), mixed());
+    CHECK(!model.surfels.empty());
     for (const format::Patch& patch : model.patches) {
         const Vec3f low = vec(patch.bounds_min), high = vec(patch.bounds_max);
         for (std::uint32_t level = 0; level < patch.lod_count; ++level) {

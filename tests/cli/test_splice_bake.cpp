@@ -47,6 +47,14 @@ TEST_CASE("splice-bake needs no option: the model gets the input's name in the c
     CHECK_NOTHROW(ModelFile(folder / "cube.splice"));
 }
 
+TEST_CASE("splice-bake drops .gz from the input's name") {
+    const TemporaryFolder folder;
+    test::write_cube(folder / "cube.obj");
+    REQUIRE(test::run({.program = "gzip", .arguments = {"cube.obj"}, .folder = folder.path()}).exit_code == 0);
+    CHECK(bake(folder, {"cube.obj.gz"}).exit_code == 0);
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"cube.obj.gz", "cube.splice"});
+}
+
 TEST_CASE("splice-bake --help names every option with its unit and gives examples") {
     const TemporaryFolder folder;
     const Outcome outcome = bake(folder, {"--help"});
@@ -145,7 +153,7 @@ TEST_CASE("splice-bake tells what repair did, and only that") {
     const Outcome outcome = bake(folder, {"awkward.obj"});
     CHECK(outcome.exit_code == 0);
     CHECK_THAT(outcome.out, Contains("1 isolated vertices dropped") && Contains("1 duplicate triangles dropped"));
-    CHECK_THAT(outcome.out, !Contains(" 0 ") || !Contains("0 vertices welded"));
+    CHECK_THAT(outcome.out, !Contains("vertices welded"));
 }
 
 TEST_CASE("splice-bake --representation makes everything triangles or everything surfels") {

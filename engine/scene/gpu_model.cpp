@@ -57,13 +57,18 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
       pool_(device) {
-    const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes) {
-        return gpu::create_buffer(device, {.size = bytes.size(), .usage = usage, .name = name}, bytes);
+    const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes,
+                            std::uint64_t padding = 0) {
+        gpu::Buffer result(device, {.size = bytes.size() + padding, .usage = usage, .name = name});
+        gpu::upload(device, result, bytes);
+        return result;
     };
     vertices_ = buffer("vertices", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.vertices));
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
-    // Vertex buffers, because a storage binding is limited to 128 MiB on lavapipe.
-    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.surfels));
+    // A vertex buffer, because a storage binding is limited to 128 MiB on lavapipe. The padding is for synchronisation
+    // validation (1.3.239), which takes the four vertices of an instance for four records of the instance's buffer.
+    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.surfels),
+                      3 * sizeof(format::Surfel));
     create_materials(device, model);
 }
 

@@ -104,6 +104,13 @@ const Model& HandmadeModel::model() {
         model_.info.bounds_min[axis] = root.bounds_min[axis];
         model_.info.bounds_max[axis] = root.bounds_max[axis];
     }
+    // Every patch counts as one source triangle, which is its own merge root.
+    model_.info.source_triangles = model_.patches.size();
+    for (std::size_t i = 0; i < model_.patches.size(); ++i)
+        model_.patches[i].merge_root = static_cast<std::uint32_t>(i);
+    for (const format::Patch& patch : model_.patches)
+        model_.info.max_surfel_radius = std::max(model_.info.max_surfel_radius, patch.max_surfel_radius);
+    model_.info.median_surfel_radius = model_.info.max_surfel_radius;
     root.patch_count = static_cast<std::uint32_t>(model_.patches.size());
     model_.octree = {root};
     return model_;

@@ -1,0 +1,284 @@
+// splice-capture as a user meets it: pictures, options, bad input, exit codes.
+#include "engine/capture/png_file.h"
+#include "tests/cli/spawn.h"
+#include "tests/engine/handmade_model.h"
+#include "tests/support/test_files.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+using namespace splice;
+using namespace splice::test;
+
+namespace {
+
+Outcome capture(const TemporaryFolder& folder, const std::vector<std::string>& arguments) {
+    return run({.program = program("splice-capture"), .arguments = arguments, .folder = folder.path()});
+}
+
+std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path) << text;
+}
+
+// A red sheet of surfels beside a green quad of triangles.
+void write_small_model(const std::filesystem::path& path) {
+    HandmadeModel model;
+    model.add_surfels(sheet({-0.5f, -0.5f, 0}, {0.5f, 0, 0}, {0, 1, 0}, 8, kRed));
+    model.add_triangles(quad({0, -0.5f, 0}, {0.5f, 0, 0}, {0, 1, 0}, kGreen));
+    write_model(view_of(model.model()), path);
+}
+
+std::vector<std::string> files_in(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("a model becomes a picture of the size asked for, with its statistics") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const Outcome outcome = capture(folder, {"a.splice", "-o", "a.png", "--size", "120x80", "--stats", "a.json"});
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.err == "");
+    const Picture picture = read_png(folder / "a.png");
+    CHECK(picture.width == 120);
+    CHECK(picture.height == 80);
+    const auto stats = nlohmann::json::parse(read_text(folder / "a.json"));
+    CHECK(stats.at("device").is_string());
+    CHECK(stats.at("frame_ms").get<double>() > 0);
+    CHECK(stats.at("surfels_drawn") == 81);
+    CHECK(stats.at("triangles_drawn") == 2);
+    CHECK(stats.at("covered_pixels").get<int>() > 500);
+    CHECK(stats.at("overlap_mean").get<double>() >= 1);
+    std::vector<std::string> passes;
+    for (const auto& pass : stats.at("passes")) {
+        passes.push_back(pass.at("name"));
+        CHECK(pass.at("gpu_ms").get<double>() >= 0);
+    }
+    CHECK(passes == std::vector<std::string>{"triangle", "surfel_visibility", "surfel_attribute", "surfel_normalise",
+                                             "read_back"});
+}
+
+TEST_CASE("a mesh and a scene that names it make the same picture") {
+    const TemporaryFolder folder;
+    write_text(folder / "tetra.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    write_text(folder / "scene.json", R"({"models": [{"file": "tetra.obj"}], "render": {"size": [64, 64]}})");
+    CHECK(capture(folder, {"tetra.obj", "-o", "mesh.png", "--size", "64x64", "--quiet"}).exit_code == 0);
+    CHECK(capture(folder, {"scene.json", "-o", "scene.png", "--quiet"}).exit_code == 0);
+    const Picture mesh = read_png(folder / "mesh.png"), scene = read_png(folder / "scene.png");
+    CHECK(mesh.rgba == scene.rgba);
+    CHECK(std::any_of(mesh.rgba.begin(), mesh.rgba.end(), [](std::uint8_t v) { return v != 255; }));
+}
+
+TEST_CASE("unit_box places a model by its bounding box, whatever its coordinates") {
+    const TemporaryFolder folder;
+    write_text(folder / "small.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    write_text(folder / "far.obj",
+               "v 1000 500 0\nv 1200 500 0\nv 1000 700 0\nv 1000 500 200\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    const std::string rest = R"(, "unit_box": true, "transform": {"scale": 2}}],
+        "camera": {"eye": [2, 2, 5], "target": [0, 0, 0]}, "render": {"size": [64, 64]}})";
+    write_text(folder / "small.json", R"({"models": [{"file": "small.obj")" + rest);
+    write_text(folder / "far.json", R"({"models": [{"file": "far.obj")" + rest);
+    CHECK(capture(folder, {"small.json", "-o", "small.png", "--quiet"}).exit_code == 0);
+    CHECK(capture(folder, {"far.json", "-o", "far.png", "--quiet"}).exit_code == 0);
+    CHECK(read_png(folder / "small.png").rgba == read_png(folder / "far.png").rgba);
+}
+
+TEST_CASE("an orbit writes numbered pictures and a record of each") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const Outcome outcome = capture(folder, {"a.splice", "-o", "turn.png", "--orbit", "4", "--size", "48x48",
+                                             "--two-sided", "--stats", "turn.json", "--quiet"});
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.out + outcome.err == "");
+    CHECK(files_in(folder.path()) == std::vector<std::string>{"a.splice", "turn-000.png", "turn-001.png",
+                                                              "turn-002.png", "turn-003.png", "turn.json"});
+    CHECK(read_png(folder / "turn-000.png").rgba != read_png(folder / "turn-001.png").rgba);
+    const auto stats = nlohmann::json::parse(read_text(folder / "turn.json"));
+    CHECK(stats.at("frames").size() == 4);
+}
+
+TEST_CASE("an explicit camera sees what it is pointed at") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    // Left of the middle surfels, right triangles: from behind their places are swapped.
+    const std::vector<std::string> common{"--size",       "64x64", "--quiet",  "--two-sided",
+                                          "--background", "black", "--target", "0,0,0"};
+    for (const bool behind : {false, true}) {
+        for (const bool orthographic : {false, true}) {
+            CAPTURE(behind, orthographic);
+            std::vector<std::string> arguments{"a.splice", "-o", "a.png", "--eye", behind ? "0,0,-2" : "0,0,2"};
+            arguments.insert(arguments.end(), common.begin(), common.end());
+            if (orthographic) arguments.push_back("--orthographic");
+            REQUIRE(capture(folder, arguments).exit_code == 0);
+            const Picture picture = read_png(folder / "a.png");
+            const auto channel = [&](std::uint32_t x, int which) {
+                return static_cast<int>(picture.rgba[4 * (32 * std::size_t{64} + x) + static_cast<std::size_t>(which)]);
+            };
+            CHECK(channel(behind ? 44 : 20, 0) > 100);
+            CHECK(channel(behind ? 20 : 44, 1) > 100);
+            CHECK(channel(behind ? 44 : 20, 1) < 30);
+            CHECK(channel(2, 0) + channel(2, 1) == 0);
+        }
+    }
+}
+
+TEST_CASE("a transparent background is transparent in the file") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    REQUIRE(capture(folder, {"a.splice", "-o", "a.png", "--background", "transparent", "--size", "32x32"}).exit_code ==
+            0);
+    const Picture picture = read_png(folder / "a.png");
+    CHECK(picture.rgba[3] == 0);
+    CHECK(picture.rgba[4 * (16 * 32 + 16) + 3] == 255);
+}
+
+TEST_CASE("every view is a valid run of the program, validated") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    for (const char* view : {"shaded", "depth", "wireframe", "overlap"}) {
+        CAPTURE(view);
+        const Outcome outcome =
+            capture(folder, {"a.splice", "-o", "a.png", "--view", view, "--validate", "--size", "64x64", "--quiet"});
+        CHECK(outcome.exit_code == 0);
+        CHECK(outcome.err == "");
+    }
+}
+
+TEST_CASE("wrong usage is one line and exit code 2") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const std::vector<std::pair<std::vector<std::string>, std::string>> table{
+        {{}, "INPUT is missing"},
+        {{"a.splice"}, "-o OUT.png is missing"},
+        {{"a.splice", "-o", "b.png", "--no-such-option"}, "--no-such-option"},
+        {{"a.splice", "b.splice", "-o", "b.png"}, "b.splice"},
+        {{"a.splice", "-o", "b.png", "--size", "512"},
+         "--size: expected WIDTHxHEIGHT in pixels like 512x512, got \"512\""},
+        {{"a.splice", "-o", "b.png", "--size", "0x5"}, "--size"},
+        {{"a.splice", "-o", "b.png", "--size", "-4x5"}, "--size"},
+        {{"a.splice", "-o", "b.png", "--size", "99999x99999"}, "a picture of 99999x99999 pixels"},
+        {{"a.splice", "-o", "b.png", "--eye", "1,2", "--target", "0,0,0"}, "--eye: expected three numbers"},
+        {{"a.splice", "-o", "b.png", "--eye", "1,2,x", "--target", "0,0,0"}, "--eye: expected three numbers"},
+        {{"a.splice", "-o", "b.png", "--eye", "1,2,3,4", "--target", "0,0,0"}, "--eye: expected three numbers"},
+        {{"a.splice", "-o", "b.png", "--eye", "1,2,nan", "--target", "0,0,0"}, "--eye: expected three numbers"},
+        {{"a.splice", "-o", "b.png", "--eye", "1,2,3"}, "--eye and --target are given together"},
+        {{"a.splice", "-o", "b.png", "--eye", "0,0,0", "--target", "0,0,0"}, "do not define a view"},
+        {{"a.splice", "-o", "b.png", "--up", "0,0,1"}, "--up needs --eye"},
+        {{"a.splice", "-o", "b.png", "--eye", "0,0,1", "--target", "0,0,0", "--zoom", "2"}, "exclude --azimuth"},
+        {{"a.splice", "-o", "b.png", "--fov", "180"}, "--fov: expected a number from 1 to 170 degrees, got \"180\""},
+        {{"a.splice", "-o", "b.png", "--fov", "wide"}, "--fov"},
+        {{"a.splice", "-o", "b.png", "--elevation", "91"}, "--elevation"},
+        {{"a.splice", "-o", "b.png", "--zoom", "0"}, "--zoom"},
+        {{"a.splice", "-o", "b.png", "--orbit", "2.5"}, "--orbit: expected a whole number of frames"},
+        {{"a.splice", "-o", "b.png", "--view", "pretty"}, "--view: expected one of shaded, depth"},
+        {{"a.splice", "-o", "b.png", "--background", "#12"}, "--background: expected transparent"},
+        {{"a.splice", "-o", "b.png", "--prefilter", "maybe"}, "--prefilter: expected on or off"},
+        {{"a.splice", "-o", "b.png", "--epsilon-scale", "-1"}, "--epsilon-scale: expected a number from 0 to 100"},
+        {{"a.splice", "-o", "b.png", "--one-sided", "--two-sided"}, "exclude each other"},
+        {{"a.splice", "-o", "b.png", "--device", "banana"}, "banana"},
+    };
+    for (const auto& [arguments, expected] : table) {
+        const Outcome outcome = capture(folder, arguments);
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK(outcome.err.find("splice-capture: ") == 0);
+        CHECK(outcome.err.find(expected) != std::string::npos);
+        CHECK(files_in(folder.path()) == std::vector<std::string>{"a.splice"});
+    }
+}
+
+TEST_CASE("input that cannot be used is one line and exit code 1, and leaves no picture") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    std::string bytes = read_text(folder / "a.splice");
+    write_text(folder / "cut.splice", bytes.substr(0, bytes.size() / 2));
+    bytes[bytes.size() - 5] = static_cast<char>(bytes[bytes.size() - 5] ^ 0x55);
+    write_text(folder / "flipped.splice", bytes);
+    write_text(folder / "empty.json", "");
+    write_text(folder / "wrong.json", R"({"models": [{"file": "a.splice", "transform": {"scale": -1}}]})");
+    write_text(folder / "missing.json", R"({"models": [{"file": "gone.splice"}]})");
+    write_text(folder / "loop.json", R"({"models": [{"file": "loop.json"}]})");
+    write_text(folder / "shape.json", R"({"models": [{"shape": {"kind": "blob"}}]})");
+    write_text(folder / "cells.json", R"({"models": [{"shape": {"kind": "cube", "cells": 0.5}}]})");
+    write_text(folder / "knot.json", R"({"models": [{"shape": {"kind": "torus-knot", "p": 4, "q": 2}}]})");
+    write_text(folder / "extra.json", R"({"models": [{"shape": {"kind": "cube", "sides": 3}}]})");
+    write_text(folder / "nothing.obj", "# no faces\n");
+    std::filesystem::create_directory(folder / "folder");
+    const std::vector<std::string> before = files_in(folder.path());
+    const std::vector<std::pair<std::vector<std::string>, std::string>> table{
+        {{"gone.splice", "-o", "b.png"}, "gone.splice"},
+        {{"folder", "-o", "b.png"}, "folder"},
+        {{"cut.splice", "-o", "b.png"}, "cut.splice"},
+        {{"flipped.splice", "-o", "b.png"}, "flipped.splice"},
+        {{"empty.json", "-o", "b.png"}, "empty.json: line 1: not valid JSON"},
+        {{"wrong.json", "-o", "b.png"}, "wrong.json: /models/0/transform/scale: expected a positive number, got -1"},
+        {{"missing.json", "-o", "b.png"}, "gone.splice"},
+        {{"loop.json", "-o", "b.png"}, "loop.json: a scene file where a model or a mesh is expected"},
+        {{"shape.json", "-o", "b.png"}, "shape.json: /models/0/shape/kind: expected one of cube, "},
+        {{"cells.json", "-o", "b.png"},
+         "cells.json: /models/0/shape/cells: expected a whole number from 1 to 1000, got 0.5"},
+        {{"knot.json", "-o", "b.png"}, "knot.json: /models/0/shape: expected p and q without a common divisor"},
+        {{"extra.json", "-o", "b.png"},
+         "extra.json: /models/0/shape/sides: unknown member, expected one of kind, cells"},
+        {{"nothing.obj", "-o", "b.png"}, "nothing.obj"},
+        {{"a.splice", "-o", "no/such/folder/b.png"}, "no/such/folder"},
+        {{"a.splice", "-o", "folder"}, "folder"},
+        {{"a.splice", "-o", "b.png", "--device", "57"}, "57"},
+    };
+    for (const auto& [arguments, expected] : table) {
+        const Outcome outcome = capture(folder, arguments);
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK(outcome.err.find("splice-capture: ") == 0);
+        CHECK(outcome.err.find(expected) != std::string::npos);
+        CHECK(files_in(folder.path()) == before);
+    }
+}
+
+TEST_CASE("a picture that is already there survives a failed run") {
+    const TemporaryFolder folder;
+    write_text(folder / "a.png", "precious");
+    CHECK(capture(folder, {"gone.splice", "-o", "a.png"}).exit_code == 1);
+    CHECK(read_text(folder / "a.png") == "precious");
+}
+
+TEST_CASE("help, version and the list of devices need no input") {
+    const TemporaryFolder folder;
+    const Outcome help = capture(folder, {"--help"});
+    CHECK(help.exit_code == 0);
+    for (const char* part : {"--epsilon-scale", "DEGREES", "triangles-only", "Examples:", "Exit status"})
+        CHECK(help.out.find(part) != std::string::npos);
+    CHECK(capture(folder, {"--version"}).out.find("splice-capture ") == 0);
+    const Outcome devices = capture(folder, {"--list-devices"});
+    CHECK(devices.exit_code == 0);
+    CHECK(devices.out.find("0: ") == 0);
+}
+
+TEST_CASE("without a Vulkan driver the message says what to install") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const Outcome outcome = run({.program = program("splice-capture"),
+                                 .arguments = {"a.splice", "-o", "a.png"},
+                                 .folder = folder.path(),
+                                 .in_child = [] { setenv("VK_ICD_FILENAMES", "/nonexistent.json", 1); }});
+    CHECK(outcome.exit_code == 1);
+    CHECK(line_count(outcome.err) == 1);
+    CHECK(outcome.err.find("mesa-vulkan-drivers") != std::string::npos);
+}

@@ -1,6 +1,7 @@
 #include "preprocess/mesh/companion_files.h"
 
 #include "preprocess/mesh/file_bytes.h"
+#include "preprocess/mesh/text_scanner.h"
 #include "preprocess/model_format/error.h"
 
 #include <algorithm>
@@ -39,25 +40,22 @@ bool CompanionFiles::contains(const std::string& name) const {
     return find(name, problem).has_value();
 }
 
-std::optional<std::string> CompanionFiles::read(const std::string& name, std::vector<std::string>& warnings) const {
-    std::string problem;
-    if (const auto file = find(name, problem)) {
-        try {
-            return read_file_bytes(*file);
-        } catch (const Error& e) {
-            problem = e.what();
-        }
+std::optional<std::string> CompanionFiles::read(const std::string& name, std::string& problem) const {
+    const auto file = find(name, problem);
+    try {
+        if (file) return read_file_bytes(*file);
+    } catch (const Error& e) {
+        problem = e.what();
     }
-    warnings.push_back("file \"" + name + "\" " + problem);
+    problem = "file \"" + printable(name) + "\" " + problem;
     return std::nullopt;
 }
 
-std::optional<Image> CompanionFiles::read_image(const std::string& name, std::vector<std::string>& warnings) const {
-    const auto bytes = read(name, warnings);
+std::optional<Image> CompanionFiles::read_image(const std::string& name, std::string& problem) const {
+    const auto bytes = read(name, problem);
     if (!bytes) return std::nullopt;
-    std::string problem;
     auto image = decode_image(*bytes, problem);
-    if (!image) warnings.push_back("image \"" + name + "\": " + problem);
+    if (!image) problem = "image \"" + printable(name) + "\" is " + problem;
     return image;
 }
 

@@ -21,11 +21,12 @@ class CompanionFiles {
     /// True if `name` is a readable file inside the folder; says nothing otherwise.
     bool contains(const std::string& name) const;
 
-    /// The file's bytes. When there is no such file or it lies outside the folder: nothing, and a line in `warnings`.
-    std::optional<std::string> read(const std::string& name, std::vector<std::string>& warnings) const;
+    /// The file's bytes. When there is no such file or it lies outside the folder: nothing, and the reason in
+    /// `problem`.
+    std::optional<std::string> read(const std::string& name, std::string& problem) const;
 
-    /// An image in PNG, JPEG, BMP, TGA or PPM; nothing and a warning when it is absent or unreadable.
-    std::optional<Image> read_image(const std::string& name, std::vector<std::string>& warnings) const;
+    /// An image in PNG, JPEG, BMP, TGA or PPM; nothing and the reason when it is absent or unreadable.
+    std::optional<Image> read_image(const std::string& name, std::string& problem) const;
 
   private:
     std::optional<std::filesystem::path> find(const std::string& name, std::string& problem) const;

@@ -8,6 +8,23 @@
 #include <sstream>
 
 namespace splice {
+namespace {
+
+/// tinyobjloader makes materials without Kd black, or grey if they have a texture; a mesh without colour is white.
+std::string with_default_colours(std::string_view library) {
+    std::string text;
+    TextScanner lines(library);
+    while (!lines.at_end()) {
+        const std::string_view line = lines.line();
+        if (line.find('\0') != std::string_view::npos) continue;
+        text.append(line);
+        text += '\n';
+        if (TextScanner(line).token() == "newmtl") text += "Kd 1 1 1\n";
+    }
+    return text;
+}
+
+}  // namespace
 
 void ObjMaterials::load_libraries(const std::string& names, SourceMesh& mesh) {
     std::vector<std::string> libraries;
@@ -19,14 +36,17 @@ void ObjMaterials::load_libraries(const std::string& names, SourceMesh& mesh) {
             libraries.emplace_back(word);
     }
     for (const std::string& library : libraries) {
-        if (const auto text = companions_.read(library, mesh.warnings)) parse_library(*text, mesh);
+        std::string problem;
+        if (const auto text = companions_.read(library, problem)) {
+            parse_library(*text, mesh);
+        } else {
+            warn(mesh, problem);
+        }
     }
 }
 
 void ObjMaterials::parse_library(std::string_view text, SourceMesh& mesh) {
-    std::string clean(text);
-    std::erase(clean, '\0');
-    std::istringstream stream(clean);
+    std::istringstream stream(with_default_colours(text));
     std::map<std::string, int> ids;
     std::vector<tinyobj::material_t> materials;
     std::string warning, error;
@@ -41,9 +61,12 @@ void ObjMaterials::parse_library(std::string_view text, SourceMesh& mesh) {
         if (!texture.empty()) {
             const auto [entry, is_new] = image_by_name_.try_emplace(texture, kNoImage);
             if (is_new) {
-                if (auto image = companions_.read_image(texture, mesh.warnings)) {
+                std::string problem;
+                if (auto image = companions_.read_image(texture, problem)) {
                     entry->second = static_cast<std::uint32_t>(mesh.images.size());
                     mesh.images.push_back(std::move(*image));
+                } else {
+                    warn(mesh, problem);
                 }
             }
             material.image = entry->second;
@@ -54,14 +77,14 @@ void ObjMaterials::parse_library(std::string_view text, SourceMesh& mesh) {
 }
 
 std::uint32_t ObjMaterials::use(const std::string& name, SourceMesh& mesh) {
-    const auto [entry, is_new] = by_name_.try_emplace(name, static_cast<std::uint32_t>(mesh.materials.size()));
-    if (is_new) {
-        if (!name.empty()) mesh.warnings.push_back("material \"" + name + "\" not found, using white");
-        MeshMaterial material;
-        material.name = name;
-        mesh.materials.push_back(std::move(material));
+    const auto known = by_name_.find(name);
+    if (known != by_name_.end()) return known->second;
+    if (!name.empty()) {
+        warn(mesh, "material \"" + printable(name) + "\" not found, using white");
+        return by_name_[name] = use("", mesh);
     }
-    return entry->second;
+    mesh.materials.emplace_back();
+    return by_name_[name] = static_cast<std::uint32_t>(mesh.materials.size() - 1);
 }
 
 }  // namespace splice

@@ -20,7 +20,7 @@ class ObjMaterials {
     /// Appends the materials in the text of a library; the first of equal names counts.
     void parse_library(std::string_view text, SourceMesh& mesh);
 
-    /// Index into mesh.materials; unknown names get a new white material and a warning. The empty name is the default.
+    /// Index into mesh.materials. The empty name is a white default; unknown names share it, with a warning.
     std::uint32_t use(const std::string& name, SourceMesh& mesh);
 
   private:

@@ -134,14 +134,6 @@ class HeaderParser {
         }
     }
 
-    /// Binary noise must not reach the terminal.
-    static std::string printable(std::string_view text) {
-        std::string result;
-        for (const char c : text.substr(0, 40))
-            result += c >= ' ' && c <= '~' ? c : '?';
-        return result;
-    }
-
     [[noreturn]] void fail(const std::string& problem) const {
         throw InputError(name_, "line " + std::to_string(line_), problem);
     }

@@ -30,8 +30,8 @@ class SmfParser {
             text_.line();
         }
         if (unknown_ > 0) {
-            mesh_.warnings.push_back(std::to_string(unknown_) + " lines with unknown commands left out, the first is " +
-                                     first_unknown_);
+            warn(mesh_,
+                 std::to_string(unknown_) + " lines with unknown commands left out, the first is " + first_unknown_);
         }
         bind_attributes();
         return std::move(mesh_);
@@ -110,7 +110,7 @@ class SmfParser {
         if (mesh_.materials.empty()) {
             add_image_material(std::string(file), companions_, mesh_);
         } else {
-            mesh_.warnings.push_back("a second texture is left out: \"" + std::string(file) + "\"");
+            warn(mesh_, "a second texture is left out: \"" + printable(file) + "\"");
         }
     }
 

@@ -47,8 +47,8 @@ SourceMesh parse_binary(std::string_view bytes, const std::string& name) {
         mesh.polygon_begin.push_back(mesh.corner_position.size());
     }
     if (count < complete) {
-        mesh.warnings.push_back("the file holds more than the " + std::to_string(count) +
-                                " triangles of its header; the rest is left out");
+        warn(mesh, "the file holds more than the " + std::to_string(count) +
+                       " triangles of its header; the rest is left out");
     }
     return mesh;
 }

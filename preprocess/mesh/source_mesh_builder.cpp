@@ -15,6 +15,15 @@ void expand(const std::vector<Value>& per_vertex, const Value& missing,
 
 }  // namespace
 
+void warn(SourceMesh& mesh, const std::string& warning) {
+    constexpr std::size_t kMost = 20;
+    if (mesh.warnings.size() < kMost) {
+        mesh.warnings.push_back(warning);
+    } else if (mesh.warnings.size() == kMost) {
+        mesh.warnings.emplace_back("more warnings are left out");
+    }
+}
+
 void expand_vertex_attributes(const VertexAttributes& attributes, SourceMesh& mesh) {
     expand<Vec3f>(attributes.normals, Vec3f::Zero(), mesh.corner_position, mesh.corner_normals);
     expand<Vec2f>(attributes.uvs, Vec2f::Zero(), mesh.corner_position, mesh.corner_uvs);
@@ -24,9 +33,12 @@ void expand_vertex_attributes(const VertexAttributes& attributes, SourceMesh& me
 void add_image_material(const std::string& image_name, const CompanionFiles& companions, SourceMesh& mesh) {
     MeshMaterial material;
     material.name = image_name;
-    if (auto image = companions.read_image(image_name, mesh.warnings)) {
+    std::string problem;
+    if (auto image = companions.read_image(image_name, problem)) {
         material.image = static_cast<std::uint32_t>(mesh.images.size());
         mesh.images.push_back(std::move(*image));
+    } else {
+        warn(mesh, problem);
     }
     mesh.materials.push_back(std::move(material));
 }

@@ -32,6 +32,9 @@ inline std::uint32_t pack_colour(double r, double g, double b) {
     return component(r) | (component(g) << 8) | (component(b) << 16) | 0xff000000u;
 }
 
+/// Adds to mesh.warnings, but not without end: after twenty one more says that there are more.
+void warn(SourceMesh& mesh, const std::string& warning);
+
 /// Attributes as files bind them to vertices; each empty or one a vertex.
 struct VertexAttributes {
     std::vector<Vec3f> normals;

@@ -25,6 +25,16 @@ inline std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+/// For messages: what a file says must not steer a terminal, and need not fill it.
+inline std::string printable(std::string_view text) {
+    constexpr std::size_t kLongest = 80;
+    std::string result;
+    for (const char c : text.substr(0, kLongest))
+        result += c >= ' ' && c <= '~' ? c : '?';
+    if (text.size() > kLongest) result += "...";
+    return result;
+}
+
 /// A view that shrinks from the front as it is read.
 class TextScanner {
   public:

@@ -112,20 +112,24 @@ TEST_CASE("OBJ file without one usable face names the line of the first") {
 TEST_CASE("OBJ materials: colours, textures with blanks in their names, first definition counts") {
     const TemporaryFolder folder;
     write(folder / "my scene.mtl",
-          "newmtl\tred wall \nKd 1 0 0\nnewmtl plain\nKd 0 1 0.5\nmap_Kd -s 1 1 1 two by one.ppm\nnewmtl plain\nKd 0 0 "
+          "newmtl\tred wall \nKd 1 0 0\nnewmtl colourless\nmap_Kd two by one.ppm\nnewmtl plain\nKd 0 1 0.5\nmap_Kd -s "
+          "1 1 1 two by one.ppm\nnewmtl plain\nKd 0 0 "
           "0\n");
     write(folder / "two by one.ppm", std::string("P6\n2 1\n255\n") + "\xff" + std::string(4, '\0') + "\xff");
     write(folder / "scene.obj",
           std::string(kThreeVertices) +
               "mtllib my scene.mtl\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nusemtl red wall\nf 3/3 2/2 1/1\n"
-              "usemtl plain\nf 1/1 3/3 2/2\nusemtl unknown\nf 1/1 2/2 3/3\n");
+              "usemtl plain\nf 1/1 3/3 2/2\nusemtl unknown\nf 1/1 2/2 3/3\n"
+              "usemtl colourless\nf 1/1 2/2 3/3\n");
     const SourceMesh mesh = read_mesh_file(folder / "scene.obj");
-    REQUIRE(mesh.polygon_material.size() == 4);
+    REQUIRE(mesh.polygon_material.size() == 5);
     const auto material = [&](std::size_t p) { return mesh.materials.at(mesh.polygon_material[p]); };
     CHECK(material(0).diffuse == kWhite);
     CHECK(material(1).diffuse == 0xff0000ffu);
     CHECK(material(2).diffuse == 0xff80ff00u);
     CHECK(material(3).diffuse == kWhite);
+    CHECK(material(4).diffuse == kWhite);
+    CHECK(material(4).image == material(2).image);
     REQUIRE(material(2).image == 0);
     REQUIRE(mesh.images.size() == 1);
     CHECK(mesh.images[0].width == 2);
@@ -160,4 +164,16 @@ TEST_CASE("OBJ normals are looked up per corner; bad references leave them missi
     CHECK(mesh.corner_normals[0] == Vec3f(0, 0, 1));
     CHECK(mesh.corner_normals[1] == Vec3f(1, 0, 0));
     CHECK(mesh.corner_normals[2] == Vec3f(0, 0, 0));
+}
+
+TEST_CASE("OBJ warnings do not grow with the file") {
+    std::string text = kThreeVertices;
+    for (int i = 0; i < 1000; ++i)
+        text += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
+    const SourceMesh mesh = obj(text);
+    CHECK(mesh.warnings.size() == 21);
+    CHECK(mesh.materials.size() == 1);
+    const SourceMesh escape = obj(std::string(kThreeVertices) + "usemtl \x1b[31m\x07\nf 1 2 3\n");
+    for (const char c : escape.warnings.at(0))
+        CHECK(c >= ' ');
 }

@@ -16,6 +16,7 @@ struct QualityOptions {
     int frames = 9;              // timed frames a view, after one that is not timed
     bool orthographic = false;
     double epsilon_scale = 1;
+    Sides sides = Sides::kAsBaked;
     BakeOptions bake;
     std::filesystem::path pictures;  // empty: none are written
 };

@@ -49,6 +49,11 @@ void add_quality(CLI::App& command, CommandLine& line, std::size_t directions) {
     command.add_option("--epsilon-scale", line.quality.epsilon_scale, "Times each surfel's depth offset")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    command.add_flag_callback(
+        "--two-sided", [&] { line.quality.sides = Sides::kTwoSided; }, "Cull nothing, whatever the bake decided");
+    command.add_option("--h-max", line.quality.bake.sampling.h_max, "Largest surfel spacing, unit-box units")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     command
         .add_option("--triangle-share", line.quality.bake.cluster.triangle_share,
                     "Share of the triangles that the bake keeps as triangles, 0..1")

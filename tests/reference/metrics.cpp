@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
-#include <utility>
 
 namespace splice::reference {
 namespace {
@@ -36,17 +35,24 @@ Mask map_pixels(const Mask& mask, const Rule& rule) {
     return result;
 }
 
-/// Nearest and farthest depth of the covered pixels of the 3x3 neighbourhood; {kNothing, -kNothing} when there is none.
-std::pair<float, float> depth_range(const DepthImage& depth, std::uint32_t x, std::uint32_t y) {
+struct DepthRange {
     float nearest = kNothing, farthest = -kNothing;
-    for (std::uint32_t ny = y ? y - 1 : 0; ny <= std::min(y + 1, depth.height - 1); ++ny)
-        for (std::uint32_t nx = x ? x - 1 : 0; nx <= std::min(x + 1, depth.width - 1); ++nx) {
-            const float d = depth.at(nx, ny);
+};
+
+/// Over the covered pixels of the (2 reach + 1)^2 neighbourhood within `radius`.
+DepthRange depth_range(const DepthImage& depth, std::uint32_t x, std::uint32_t y, std::int64_t reach, double radius) {
+    DepthRange range;
+    for (std::int64_t dy = -reach; dy <= reach; ++dy)
+        for (std::int64_t dx = -reach; dx <= reach; ++dx) {
+            const std::int64_t nx = x + dx, ny = y + dy;
+            if (static_cast<double>(dx * dx + dy * dy) > radius * radius) continue;
+            if (nx < 0 || ny < 0 || nx >= depth.width || ny >= depth.height) continue;
+            const float d = depth.at(static_cast<std::uint32_t>(nx), static_cast<std::uint32_t>(ny));
             if (d == kNothing) continue;
-            nearest = std::min(nearest, d);
-            farthest = std::max(farthest, d);
+            range.nearest = std::min(range.nearest, d);
+            range.farthest = std::max(range.farthest, d);
         }
-    return {nearest, farthest};
+    return range;
 }
 
 }  // namespace
@@ -113,7 +119,7 @@ SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference
     SurfaceReport report;
     for (std::uint32_t y = 0; y < frame.height; ++y)
         for (std::uint32_t x = 0; x < frame.width; ++x) {
-            const auto [nearest, farthest] = depth_range(reference, x, y);
+            const auto [nearest, farthest] = depth_range(reference, x, y, 1, 2);
             const float shown = frame.at(x, y), allowed = tolerance.depth.at(x, y);
             const auto mark = [&](Rgb8 colour) {
                 if (marked) marked->at(x, y) = colour;
@@ -135,12 +141,17 @@ SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference
                 }
             }
             if (shown == kNothing) continue;
+            const double reach = std::max(2.0, 1.0 + tolerance.radius_px.at(x, y));
             if (nearest != kNothing && shown < nearest - allowed) {
                 ++report.in_front;
-                report.worst_in_front = std::max(report.worst_in_front, double{nearest} - allowed - shown);
-                mark({255, 0, 255});
+                mark({110, 0, 110});
+                const float around = depth_range(reference, x, y, static_cast<std::int64_t>(reach), reach).nearest;
+                if (shown < around - allowed) {
+                    ++report.detached;
+                    report.worst_in_front = std::max(report.worst_in_front, double{around} - allowed - shown);
+                    mark({255, 0, 255});
+                }
             }
-            const double reach = std::max(2.0, 1.0 + tolerance.radius_px.at(x, y));
             if (!any_within(truth, x, y, reach, 1)) {
                 ++report.grown;
                 mark({255, 255, 0});

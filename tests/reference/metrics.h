@@ -31,11 +31,14 @@ struct SurfaceReport {
     std::uint64_t holes = 0;     // of those: background, or a surface behind the tolerated depth
     std::uint64_t lost = 0;      // reference pixels without cover within 1 px
     std::uint64_t grown = 0;     // covered pixels farther than allowed from any reference pixel
-    std::uint64_t in_front = 0;  // covered pixels, inside or at the border, nearer than the tolerated depth
+    std::uint64_t in_front = 0;  // covered pixels nearer than the nearest of the 3x3, beyond the tolerance
+    std::uint64_t detached = 0;  // of those: with nothing that near within the reach that growth is allowed
     double worst_behind = 0;  // largest excess over the tolerated depth among the holes with a surface, unit-box units
-    double worst_in_front = 0;
+    double worst_in_front = 0;  // the same for detached pixels
 
-    bool clean() const { return holes + lost + grown + in_front == 0; }
+    /// Overhangs (in_front without detached) aside: a flat disk that ends at an outline in front of another part of the
+    /// model covers a little of that part, as it may cover a little background.
+    bool clean() const { return holes + lost + grown + detached == 0; }
 };
 
 /// Per-pixel tolerances of the check; see surfel_tolerance.h for how surfels determine them.
@@ -52,8 +55,9 @@ struct Tolerance {
 ///  - growth: a covered pixel with no reference pixel within max(2, 1 + disk radius) px;
 ///  - in front: a covered pixel whose depth is less than the nearest of the 3x3 minus the tolerance (where the 3x3
 ///  holds
-///    any reference pixel).
-/// `marked`, if given, receives a picture: grey reference, red holes, blue lost, yellow grown, magenta in front.
+///    any reference pixel); detached: even less than the nearest within max(2, 1 + disk radius) px.
+/// `marked`, if given, receives a picture: grey reference, red holes, blue lost, yellow grown, dark
+/// magenta in front, magenta detached.
 SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference, const Tolerance& tolerance,
                             ColourImage* marked = nullptr);
 

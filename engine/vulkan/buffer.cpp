@@ -36,7 +36,8 @@ std::span<std::byte> Buffer::mapped() const {
 std::vector<StorageChunk> storage_chunks(const VkPhysicalDeviceLimits& limits, uint64_t elements,
                                          uint64_t element_size) {
     // Chunks start at multiples of both the element and the alignment that a descriptor's offset needs.
-    const uint64_t step = std::lcm(element_size, std::max<uint64_t>(limits.minStorageBufferOffsetAlignment, 1));
+    const uint64_t alignment = std::max<uint64_t>(limits.minStorageBufferOffsetAlignment, 1);
+    const uint64_t step = std::lcm(std::max<uint64_t>(element_size, 1), alignment);
     const uint64_t chunk_bytes = limits.maxStorageBufferRange / step * step;
     if (element_size == 0 || chunk_bytes == 0) {
         throw DeviceError("elements of " + std::to_string(element_size) + " bytes do not fit a storage buffer of " +

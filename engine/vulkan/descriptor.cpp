@@ -47,6 +47,7 @@ VkDescriptorSet DescriptorPool::allocate(const DescriptorSetLayout& layout) {
         }
     }
     std::vector<VkDescriptorPoolSize> sizes;
+    sizes.reserve(kTypes.size() + layout.bindings().size());
     for (const VkDescriptorType type : kTypes)
         sizes.push_back({type, 2 * kSetsPerPool});
     for (const DescriptorBinding& binding : layout.bindings())

@@ -13,8 +13,8 @@
 namespace splice::gpu {
 
 struct DeviceInfo {
-    uint32_t index = 0;  ///< as `--device INDEX` names it
-    std::string name = {};    ///< e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
+    uint32_t index = 0;     ///< as `--device INDEX` names it
+    std::string name = {};  ///< e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     uint32_t api_version = 0;  ///< VK_MAKE_API_VERSION
     std::string driver;        ///< e.g. "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)"

@@ -40,6 +40,7 @@ std::vector<double> Timestamps::read_ms() const {
           "reading timestamps");
     const uint64_t mask = valid_bits_ >= 64 ? UINT64_MAX : (uint64_t{1} << valid_bits_) - 1;
     std::vector<double> times;
+    times.reserve(ticks.size());
     for (const uint64_t tick : ticks)
         times.push_back(static_cast<double>((tick - ticks[0]) & mask) * ms_per_tick_);
     return times;

@@ -22,7 +22,9 @@ class Tape {
 
 class Declarer {
   public:
-    Declarer(graph::Graph& graph, const std::vector<uint32_t>& tape) : graph_(graph), tape_(tape) {}
+    Declarer(graph::Graph& graph, const std::vector<uint32_t>& tape,
+             const std::function<graph::RecordFunction(uint32_t pass)>& record)
+        : graph_(graph), tape_(tape), record_(record) {}
 
     void run() {
         const uint32_t images = 2 + tape_.take(7), buffers = 1 + tape_.take(4);
@@ -91,20 +93,23 @@ class Declarer {
 
     void add_pass() {
         const std::string name = "pass" + std::to_string(passes_++);
-        switch (tape_.take(4)) {
-            case 0:
-                add_compute_pass(name);
+        constexpr PassKind kinds[] = {PassKind::compute, PassKind::transfer, PassKind::graphics, PassKind::graphics};
+        graph::Pass pass = graph_.add_pass(name, kinds[tape_.take(4)]);
+        if (record_) pass.record(record_(pass.index()));
+        switch (graph_.declaration().passes.back().kind) {
+            case PassKind::compute:
+                fill_compute_pass(pass);
                 break;
-            case 1:
-                add_transfer_pass(name);
+            case PassKind::transfer:
+                fill_transfer_pass(pass);
                 break;
-            default:
-                add_graphics_pass(name);
+            case PassKind::graphics:
+                fill_graphics_pass(pass);
+                break;
         }
     }
 
-    void add_graphics_pass(const std::string& name) {
-        graph::Pass pass = graph_.add_pass(name, PassKind::graphics);
+    void fill_graphics_pass(graph::Pass& pass) {
         // The first attachment sets the size that the others must have.
         graph::ImageHandle* first = &some_image();
         const graph::ImageDescription area = description(*first);
@@ -159,8 +164,7 @@ class Declarer {
         });
     }
 
-    void add_compute_pass(const std::string& name) {
-        graph::Pass pass = graph_.add_pass(name, PassKind::compute);
+    void fill_compute_pass(graph::Pass& pass) {
         const uint32_t accesses = 1 + tape_.take(4);
         for (uint32_t i = 0; i < accesses; ++i) {
             graph::ImageHandle& image = some_image();
@@ -200,8 +204,7 @@ class Declarer {
         if (tape_.take(12) == 0) pass.side_effect();
     }
 
-    void add_transfer_pass(const std::string& name) {
-        graph::Pass pass = graph_.add_pass(name, PassKind::transfer);
+    void fill_transfer_pass(graph::Pass& pass) {
         const uint32_t accesses = 1 + tape_.take(2);
         for (uint32_t i = 0; i < accesses; ++i) {
             graph::ImageHandle& image = some_image();
@@ -227,6 +230,7 @@ class Declarer {
 
     graph::Graph& graph_;
     Tape tape_;
+    const std::function<graph::RecordFunction(uint32_t pass)>& record_;
     std::vector<graph::ImageHandle> images_;
     std::vector<graph::BufferHandle> buffers_;
     uint32_t passes_ = 0;
@@ -234,8 +238,9 @@ class Declarer {
 
 }  // namespace
 
-void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape) {
-    Declarer(graph, tape).run();
+void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape,
+                    const std::function<graph::RecordFunction(uint32_t pass)>& record) {
+    Declarer(graph, tape, record).run();
 }
 
 std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed) {

@@ -5,13 +5,16 @@
 #include "engine/render_graph/graph.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace splice::test {
 
 /// Declares a valid frame of at most tape.size() / 4 passes. Everything the graph knows occurs: all kinds of passes and
 /// accesses, imported resources in many states, side effects, images of two sizes and several formats.
-void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape);
+/// `record` gives each pass its record function; empty: none.
+void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape,
+                    const std::function<graph::RecordFunction(uint32_t pass)>& record = {});
 
 /// Made-up sizes of the resources, log-uniform from 256 bytes to 16 MiB, in two memory types.
 std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed);

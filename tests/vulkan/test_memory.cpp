@@ -84,6 +84,7 @@ TEST_CASE("storage chunks cover every element once within the limits of a descri
     }
     CHECK(gpu::storage_chunks(limits, 0, 16).size() == 1);
     CHECK_THROWS_AS(gpu::storage_chunks(limits, 1, 2000), DeviceError);
+    CHECK_THROWS_AS(gpu::storage_chunks(limits, 1, 0), DeviceError);
     limits.maxStorageBufferRange = 1U << 27;  // as lavapipe has it
     CHECK(gpu::storage_chunks(limits, (uint64_t{1} << 27) / 32 + 1, 32).size() == 2);
 }

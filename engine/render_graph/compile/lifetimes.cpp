@@ -32,6 +32,11 @@ void find_lifetimes(Compilation& compilation) {
             for (const Access& access : compilation.graph.accesses(pass)) {
                 PlannedResource& planned = plan.resources[access.resource];
                 planned.image_usage |= image_usage(access.kind);
+                if (layout_of(access.kind, declaration.resources[access.resource].image.format) ==
+                    VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL) {
+                    // Vulkan wants it for this layout, even of images that are never attached.
+                    planned.image_usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+                }
                 planned.buffer_usage |= buffer_usage(access.kind);
                 if (last_group[access.resource] == group) continue;
                 last_group[access.resource] = group;

@@ -1,5 +1,6 @@
 // Order, culling and merging on frames small enough to judge by hand.
 #include "engine/render_graph/compile.h"
+#include "engine/render_graph/export_dot.h"
 #include "engine/render_graph/graph.h"
 #include "tests/render_graph/hazard_checker.h"
 
@@ -332,4 +333,25 @@ TEST_CASE("lifetimes, usage and aliasing") {
     CHECK(test::find_hazards(graph, plan, {1000, 1000, 1000, 1000}).empty());
     options.alias = false;
     CHECK(graph::compile(graph, options).heaps[0].size == 2 * 1024 + 1000);
+}
+
+TEST_CASE("the picture of a frame shows groups, what they hand on and what was culled, with names escaped") {
+    graph::Graph graph;
+    auto target = imported_target(graph, "the \"target\"");
+    auto a = graph.create_image("a", {kColour, 64, 64});
+    auto draw = graph.add_pass("draw", PassKind::graphics);
+    a = draw.colour_attachment(a, kClear);
+    auto compose = graph.add_pass("compose", PassKind::graphics);
+    compose.input_attachment(a);
+    target = compose.colour_attachment(target, kClear);
+    auto measure = graph.add_pass("measure", PassKind::compute);
+    measure.sampled(target);
+    measure.side_effect();
+    graph.add_pass("idle", PassKind::compute);
+    const std::string dot = graph::to_dot(graph, graph::compile(graph));
+    CHECK_THAT(dot, Contains("label=\"0: render pass 64 x 64, 2 attachments\\n2 barriers before\""));
+    CHECK_THAT(dot, Contains("pass0 -> pass1 [label=\"a\", style=dashed]"));
+    CHECK_THAT(dot, Contains("pass1 -> pass2 [label=\"the \\\"target\\\"\"]"));
+    CHECK_THAT(dot,
+               Contains("pass3 [label=\"idle\", fillcolor=grey, tooltip=\"pass 'idle' is culled: it writes nothing"));
 }

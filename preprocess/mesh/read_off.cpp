@@ -167,7 +167,7 @@ SourceMesh parse_off(std::string_view bytes, const std::string& name) {
         if (!(corners >= 0) || corners > static_cast<double>(text.raw().rest().size())) {
             text.fail("impossible number of corners");
         }
-        for (double k = 0; k < corners; ++k)
+        for (auto left = static_cast<std::size_t>(corners); left > 0; --left)
             mesh.corner_position.push_back(to_index(text.number("a vertex index")));
         mesh.polygon_begin.push_back(mesh.corner_position.size());
         std::array<double, 4> colour{};

@@ -168,7 +168,7 @@ class PlyParser {
         std::vector<double>* into = column.list == List::kUvs    ? &uvs_
                                     : column.list == List::kNone ? nullptr
                                                                  : &indices_;
-        for (double i = 0; i < length; ++i) {
+        for (auto left = static_cast<std::size_t>(length); left > 0; --left) {
             const double value = source.scalar(column.property.type);
             if (into) into->push_back(value);
         }

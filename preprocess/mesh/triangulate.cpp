@@ -12,7 +12,7 @@ using Vec2d = Eigen::Vector2d;
 /// Area-weighted normal of a polygon in space (Newell; Sutherland, Sproull and Schumacker 1974).
 Vec3d newell_normal(std::span<const Vec3d> corners) {
     Vec3d normal = Vec3d::Zero();
-    const Vec3d origin = corners[0];
+    const Vec3d& origin = corners[0];
     for (std::size_t i = 0; i < corners.size(); ++i) {
         normal += (corners[i] - origin).cross(corners[(i + 1) % corners.size()] - origin);
     }

@@ -10,6 +10,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 
 namespace splice {
 namespace {
@@ -156,12 +157,8 @@ void write_obj(const SourceMesh& mesh, const std::filesystem::path& path) {
 void write_ply(const SourceMesh& mesh, const std::filesystem::path& path) {
     static_assert(std::endian::native == std::endian::little, "binary rows are written as they lie");
     const bool normals = !mesh.corner_normals.empty(), colours = !mesh.corner_colours.empty();
-    struct Key {
-        std::uint32_t position, colour;
-        std::array<std::uint32_t, 3> normal_bits;
-        auto operator<=>(const Key&) const = default;
-    };
-    std::map<Key, std::int32_t> index_of;
+    using NormalBits = std::array<std::uint32_t, 3>;
+    std::map<std::tuple<std::uint32_t, std::uint32_t, NormalBits>, std::int32_t> index_of;  // position, colour, normal
     std::string vertices, faces;
     const auto put = [](std::string& bytes, const auto& value) {
         std::array<char, sizeof value> raw{};
@@ -174,17 +171,19 @@ void write_ply(const SourceMesh& mesh, const std::filesystem::path& path) {
             throw Error(path.string() + ": a polygon of " + std::to_string(corners) + " corners does not fit");
         faces += static_cast<char>(corners);
         for (std::uint64_t i = mesh.polygon_begin[p]; i < mesh.polygon_begin[p + 1]; ++i) {
-            Key key{mesh.corner_position[i], colours ? mesh.corner_colours[i] : 0, {}};
+            const std::uint32_t colour = colours ? mesh.corner_colours[i] : 0;
+            NormalBits normal_bits{};
             for (std::size_t k = 0; k < 3 && normals; ++k) {
-                key.normal_bits[k] = std::bit_cast<std::uint32_t>(mesh.corner_normals[i][static_cast<int>(k)]);
+                normal_bits[k] = std::bit_cast<std::uint32_t>(mesh.corner_normals[i][static_cast<int>(k)]);
             }
-            const auto [entry, is_new] = index_of.try_emplace(key, static_cast<std::int32_t>(index_of.size()));
+            const auto [entry, is_new] = index_of.try_emplace({mesh.corner_position[i], colour, normal_bits},
+                                                              static_cast<std::int32_t>(index_of.size()));
             if (is_new) {
-                for (const double coordinate : mesh.positions[key.position]) {
+                for (const double coordinate : mesh.positions[mesh.corner_position[i]]) {
                     put(vertices, static_cast<float>(coordinate));
                 }
-                if (normals) put(vertices, key.normal_bits);
-                if (colours) put(vertices, key.colour);
+                if (normals) put(vertices, normal_bits);
+                if (colours) put(vertices, colour);
             }
             put(faces, entry->second);
         }

@@ -6,6 +6,10 @@
 
 #include "preprocess/mesh/indexed_mesh.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -16,10 +20,12 @@ namespace splice {
 
 /// Neighbouring cells of one triangle; flat, so they share a normal.
 struct CellChunk {
-    std::uint32_t first, count;  // cells
-    std::uint32_t triangle;      // of the mesh
-    float spacing;               // wanted distance between surfels here
-    Vec3f normal;                // of the triangle, unit, on the side of its corner normals
+    std::uint32_t first, count;   // cells
+    std::uint32_t triangle;       // of the mesh
+    float spacing;                // wanted distance between surfels here
+    Vec3f normal;                 // of the triangle, unit, on the side of its corner normals
+    std::array<Vec3f, 3> corner;  // of the part of the triangle that the cells tile, the longest edge first
+    float cell_size;
 };
 
 class CoverCells {
@@ -37,6 +43,10 @@ class CoverCells {
     template <typename Visit>
     void for_each_chunk_near(const Vec3f& ball_centre, float ball_radius, Visit&& visit) const;
 
+    /// Calls visit(cell, corners) for the cells of a chunk: the four corners whose convex hull is the cell.
+    template <typename Visit>
+    static void for_each_cell(const CellChunk& chunk, Visit&& visit);
+
     // Cells, one entry each, chunk by chunk. Centres lie on the surface.
     std::vector<float> x, y, z;
     std::vector<float> margin;  // radius of the ball around the centre that holds the cell
@@ -45,12 +55,13 @@ class CoverCells {
     std::vector<CellChunk> chunks;  // in Morton order
 
   private:
-    struct Piece;  // a triangle or a part of one that becomes a chunk
     struct Box {
         Vec3f low, high;
     };
-    void add_cells(const Piece& piece, float cell_size);
-    void build_tree(const std::vector<Piece>& pieces);
+    void cut_triangle(const IndexedMesh& mesh, std::uint32_t triangle, const Spacing& spacing, float relative_size);
+    void sort_chunks();
+    void add_cells();
+    void build_tree();
 
     static constexpr std::size_t kBranching = 4;
     std::vector<std::vector<Box>>
@@ -76,6 +87,33 @@ void CoverCells::for_each_chunk_near(const Vec3f& ball_centre, float ball_radius
             self(self, level - 1, child);
     };
     descend(descend, levels_.size() - 1, 0);
+}
+
+template <typename Visit>
+void CoverCells::for_each_cell(const CellChunk& chunk, Visit&& visit) {
+    // Rows parallel to the longest edge, which is the base; rows and base share a frame (u, v) at the first corner.
+    const auto& [origin, base_end, apex_corner] = chunk.corner;
+    const Vec3f base = base_end - origin, apex = apex_corner - origin;
+    const float length = base.norm();
+    const Vec3f u = length > 0 ? Vec3f(base / length) : Vec3f::Zero();
+    const float apex_x = apex.dot(u);
+    const Vec3f up = apex - apex_x * u;
+    const int rows = std::max(1, static_cast<int>(std::ceil(up.norm() / chunk.cell_size)));
+    std::uint32_t cell = chunk.first;
+    for (int row = 0; row < rows; ++row) {
+        const float f0 = static_cast<float>(row) / static_cast<float>(rows);
+        const float f1 = static_cast<float>(row + 1) / static_cast<float>(rows);
+        const Vec3f low = origin + f0 * apex, high = origin + f1 * apex;
+        const Vec3f low_side = (1 - f0) * base, high_side = (1 - f1) * base;
+        const float middle = (1 - (f0 + f1) / 2) * length;
+        const int columns = std::max(1, static_cast<int>(std::ceil(middle / chunk.cell_size)));
+        for (int column = 0; column < columns; ++column, ++cell) {
+            const float g0 = static_cast<float>(column) / static_cast<float>(columns);
+            const float g1 = static_cast<float>(column + 1) / static_cast<float>(columns);
+            visit(cell, std::array<Vec3f, 4>{low + g0 * low_side, low + g1 * low_side, high + g0 * high_side,
+                                             high + g1 * high_side});
+        }
+    }
 }
 
 }  // namespace splice

@@ -1,6 +1,8 @@
 // Points are sorted into a grid and every disk looks up the points near it.
 #include "preprocess/surfel/coverage.h"
 
+#include "preprocess/surfel/surface_point.h"
+
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
@@ -67,10 +69,8 @@ std::vector<TestPoint> random_points(const IndexedMesh& mesh, const PatchSet& pa
         const auto& v = mesh.triangles[t];
         const auto root = static_cast<float>(std::sqrt(random.next())), s = static_cast<float>(random.next());
         const Vec3f a = mesh.positions[v[0]], e1 = mesh.positions[v[1]] - a, e2 = mesh.positions[v[2]] - a;
-        const Vec3f* n = &mesh.corner_normals[3 * std::size_t{t}];
         const Vec3f position = a + root * ((1 - s) * e1 + s * e2);
-        Vec3f normal = e1.cross(e2).normalized();
-        if (normal.dot(n[0] + n[1] + n[2]) < 0) normal = -normal;
+        const Vec3f normal = face_normal(mesh, t);
         const int cell = (grid_coordinate(position.z()) * kGrid + grid_coordinate(position.y())) * kGrid +
                          grid_coordinate(position.x());
         points.push_back({position, normal, patch, static_cast<std::uint32_t>(cell)});

@@ -50,12 +50,7 @@ std::vector<CoverSite> thesis_sites(const IndexedMesh& mesh, std::span<const std
                                     float spacing) {
     std::vector<CoverSite> sites;
     for (const auto& sample : sample_on_grids(mesh, triangles, h)) {
-        const auto& v = mesh.triangles[sample.triangle];
-        const Vec3f* n = &mesh.corner_normals[3 * std::size_t{sample.triangle}];
-        Vec3f face = (mesh.positions[v[1]] - mesh.positions[v[0]])
-                         .cross(mesh.positions[v[2]] - mesh.positions[v[0]])
-                         .normalized();
-        if (face.dot(n[0] + n[1] + n[2]) < 0) face = -face;
+        const Vec3f face = face_normal(mesh, sample.triangle);
         const Vec3f b = barycentric(mesh, sample.triangle, sample.position);
         sites.push_back({sample.position, surfel_normal(mesh, sample.triangle, b, face), spacing, sample.triangle, 0});
     }

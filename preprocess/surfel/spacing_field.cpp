@@ -13,12 +13,13 @@
 namespace splice {
 namespace {
 
-// A surfel's shading is constant over its disk and blended with its neighbours': the turn of the normal and the change
-// of colour from one surfel to the next bound the error of the blend.
-constexpr float kTurnPerSpacing = 0.25f;       // radians
-constexpr float kColourPerSpacing = 0.12f;     // of the distance from black to one primary, sRGB-encoded
-constexpr float kSagitta = 1.0f / 1024;        // unit-box units
-constexpr float kFeatureSpacing = 1.0f / 160;  // disks overhang an edge by about 0.3 spacings: a pixel at 512
+// The blend of surfels misses a shading gradient g by about 0.07 g s at spacing s. With n surfels to spend, the squared
+// error summed over the surface is least for s ~ g^(-1/2), that is at a constant sagitta s^2 curvature / 8.
+constexpr float kSagitta = 1.0f / 14000;       // unit-box units
+constexpr float kTurnPerSpacing = 0.5f;        // radians, at most
+constexpr float kColourPerSpacing = 0.12f;     // of the distance from black to one primary, sRGB-encoded, at most
+constexpr float kFinestDetail = 1.0f / 512;    // no curvature or colour asks for less: a pixel of a small picture
+constexpr float kFeatureSpacing = 1.0f / 512;  // disks overhang an edge by about 0.3 spacings
 constexpr float kCreaseCosine = 0.94f;         // corner normals that differ by more than 20 degrees across an edge
 constexpr int kMaxGradingSweeps = 24;
 
@@ -98,6 +99,7 @@ void SpacingField::measure_detail(const SamplingOptions& options) {
                 spacing = std::min({spacing, kTurnPerSpacing / curvature, std::sqrt(8 * kSagitta / curvature)});
             }
             if (gradient > 0) spacing = std::min(spacing, kColourPerSpacing / gradient);
+            spacing = std::max(spacing, kFinestDetail);
         }
         vertex_spacing_[i] = std::clamp(spacing, h_min, h_max);
     }

@@ -7,6 +7,18 @@
 
 namespace splice {
 
+Vec3f face_normal(const IndexedMesh& mesh, std::uint32_t triangle) {
+    const auto& v = mesh.triangles[triangle];
+    const Vec3f* n = &mesh.corner_normals[3 * std::size_t{triangle}];
+    const Vec3f smooth = n[0] + n[1] + n[2];
+    Vec3f normal = (mesh.positions[v[1]] - mesh.positions[v[0]])
+                       .cross(mesh.positions[v[2]] - mesh.positions[v[0]])
+                       .stableNormalized();
+    if (!(normal.squaredNorm() > 0.5f)) normal = smooth.stableNormalized();
+    if (!(normal.squaredNorm() > 0.5f)) normal = n[0];
+    return normal.dot(smooth) < 0 ? Vec3f(-normal) : normal;
+}
+
 Vec3f barycentric(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point) {
     const auto& v = mesh.triangles[triangle];
     const Vec3f a = mesh.positions[v[0]], b = mesh.positions[v[1]], c = mesh.positions[v[2]];
@@ -41,10 +53,10 @@ Vec3f barycentric(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& 
     return {1 - s - t, s, t};
 }
 
-Vec3f closest_point(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point) {
-    const Vec3f b = barycentric(mesh, triangle, point);
+Vec3f point_at(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric) {
     const auto& v = mesh.triangles[triangle];
-    return b[0] * mesh.positions[v[0]] + b[1] * mesh.positions[v[1]] + b[2] * mesh.positions[v[2]];
+    return barycentric[0] * mesh.positions[v[0]] + barycentric[1] * mesh.positions[v[1]] +
+           barycentric[2] * mesh.positions[v[2]];
 }
 
 Vec3f surfel_normal(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric,

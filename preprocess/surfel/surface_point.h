@@ -7,12 +7,15 @@
 
 namespace splice {
 
+/// Unit normal of a triangle, on the side of its corner normals; their mean's direction when the triangle has no area.
+Vec3f face_normal(const IndexedMesh& mesh, std::uint32_t triangle);
+
 /// Barycentric coordinates of the triangle's point nearest to `point` in its plane, clamped into the triangle; the
 /// third of each corner when the triangle has no area.
 Vec3f barycentric(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point);
 
-/// The triangle's point nearest to `point`.
-Vec3f closest_point(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point);
+/// The point at barycentric coordinates.
+Vec3f point_at(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric);
 
 /// Interpolated corner normals, bent towards `face_normal` until they agree to within 45 degrees: a disk that leans
 /// more would not represent the surface it stands for. Unit.

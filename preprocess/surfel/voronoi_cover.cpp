@@ -12,8 +12,9 @@
 namespace splice {
 namespace {
 
-constexpr float kDartDistance = 0.75f;  // of the spacing; jams at 0.81 spacings^2 a site, a hexagonal grid has 0.87
-constexpr float kClaimDistance = 1.1f;  // of the spacing: no disk is larger
+constexpr float kDartDistance = 0.75f;   // of the spacing; jams at 0.81 spacings^2 a site, a hexagonal grid has 0.87
+constexpr float kClaimDistance = 1.1f;   // of the spacing: no site owns cells whose centres are farther
+constexpr float kRoundingSlack = 1e-6f;  // unit-box units; see cover_cells.cpp
 
 // Calls visit(cell, squared distance) for the cells within `reach` of a site that its disk may cover.
 template <typename Visit>
@@ -33,9 +34,8 @@ void for_each_coverable(const CoverCells& cells, const CoverSite& site, float re
 
 CoverSite site_at(const IndexedMesh& mesh, const CellChunk& chunk, const Vec3f& near) {
     const Vec3f b = barycentric(mesh, chunk.triangle, near);
-    const auto& v = mesh.triangles[chunk.triangle];
-    const Vec3f position = b[0] * mesh.positions[v[0]] + b[1] * mesh.positions[v[1]] + b[2] * mesh.positions[v[2]];
-    return {position, surfel_normal(mesh, chunk.triangle, b, chunk.normal), chunk.spacing, chunk.triangle, 0};
+    return {point_at(mesh, chunk.triangle, b), surfel_normal(mesh, chunk.triangle, b, chunk.normal), chunk.spacing,
+            chunk.triangle, 0};
 }
 
 // The Voronoi diagram of the sites over the cells, distances in units of each site's spacing.
@@ -166,13 +166,17 @@ std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells
     std::vector<float> area(sites.size(), 0.0f);
     for (auto& site : sites)
         site.radius = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        auto& site = sites[diagram.owner[i]];
-        const Vec3f d = cells.centre(i) - site.position;
-        const float plane = d.dot(site.normal);
-        const float tangential = std::sqrt(std::max(0.0f, d.squaredNorm() - plane * plane));
-        site.radius = std::max(site.radius, std::max(tangential, std::abs(plane)) + cells.margin[i]);
-        area[diagram.owner[i]] += cells.area[i];
+    for (const auto& chunk : cells.chunks) {
+        CoverCells::for_each_cell(chunk, [&](std::uint32_t cell, const std::array<Vec3f, 4>& corners) {
+            auto& site = sites[diagram.owner[cell]];
+            area[diagram.owner[cell]] += cells.area[cell];
+            for (const auto& corner : corners) {
+                const Vec3f d = corner - site.position;
+                const float plane = d.dot(site.normal);
+                const float tangential = std::sqrt(std::max(0.0f, d.squaredNorm() - plane * plane));
+                site.radius = std::max(site.radius, std::max(tangential, std::abs(plane)) + kRoundingSlack);
+            }
+        });
     }
     std::vector<std::uint32_t> renumbered(sites.size(), kNoSite);
     std::uint32_t kept = 0;

@@ -14,10 +14,11 @@ void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads) {
         {0, sizeof(format::Surfel), quads ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX}};
     options.vertex_attributes = {
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(format::Surfel, position)},
-        {1, 0, VK_FORMAT_R32_SFLOAT, offsetof(format::Surfel, radius)},
+        {1, 0, VK_FORMAT_R16G16_SFLOAT, offsetof(format::Surfel, radius)},
         {2, 0, VK_FORMAT_R16G16_SNORM, offsetof(format::Surfel, normal)},
         {3, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(format::Surfel, colour)},
-        {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(format::Surfel, epsilon)},
+        {4, 0, VK_FORMAT_R8_SNORM, offsetof(format::Surfel, shading_bend)},
+        {6, 0, VK_FORMAT_R8G8B8A8_SNORM, offsetof(format::Surfel, shading_bend) + 1},
         {5, 0, VK_FORMAT_R32_UINT, offsetof(format::Surfel, patch)},
     };
     options.topology = quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST;

@@ -3,6 +3,7 @@
 #include "preprocess/build_model/normal_cone.h"
 #include "preprocess/build_model/patch_octree.h"
 #include "preprocess/build_model/texture_mips.h"
+#include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 
 #include <tbb/parallel_for.h>
@@ -89,10 +90,15 @@ Vec3f decoded_normal(std::uint32_t bits) {
     return {normal[0], normal[1], normal[2]};
 }
 
+float stored_length(float length) {
+    return float_from_half(half_at_least(length));
+}
+
 // The extent of a disk along an axis is r sqrt(1 - n^2); widened by its rounding.
 void add_disk(Box& box, const SurfelSample& surfel) {
     const Vec3f squares = surfel.normal.cwiseProduct(surfel.normal);
-    const Vec3f reach = (Vec3f::Ones() - squares).cwiseMax(0.0f).cwiseSqrt() * surfel.radius + Vec3f::Constant(1e-6f);
+    const Vec3f reach =
+        (Vec3f::Ones() - squares).cwiseMax(0.0f).cwiseSqrt() * stored_length(surfel.radius) + Vec3f::Constant(1e-6f);
     box.add(surfel.position - reach);
     box.add(surfel.position + reach);
 }
@@ -200,8 +206,8 @@ void Assembler::add_patches() {
         patch.lod_count = static_cast<std::uint32_t>(levels_of(old).size());
         patch.area = cluster.area;
         for (const SurfelSample& surfel : surfels_of(old)) {
-            patch.max_surfel_radius = std::max(patch.max_surfel_radius, surfel.radius);
-            patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, surfel.epsilon);
+            patch.max_surfel_radius = std::max(patch.max_surfel_radius, stored_length(surfel.radius));
+            patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, stored_length(surfel.epsilon));
         }
         patch.roughness = cluster.roughness;
         const bool is_leaf = cluster.merge_root < leaf_of_triangle_.size();
@@ -217,12 +223,16 @@ void Assembler::add_surfels() {
     for (std::uint32_t place = 0; place < order_.size(); ++place) {
         for (const SurfelSample& sample : surfels_of(order_[place])) {
             const Vec3f& position = sample.position;
-            model_.surfels.push_back({{position.x(), position.y(), position.z()},
-                                      sample.radius,
-                                      encode_octahedral(sample.normal.x(), sample.normal.y(), sample.normal.z()),
-                                      sample.colour,
-                                      sample.epsilon,
-                                      place});
+            const auto& bend = sample.shading_bend;
+            model_.surfels.push_back(
+                {{position.x(), position.y(), position.z()},
+                 half_at_least(sample.radius),
+                 half_at_least(sample.epsilon),
+                 encode_octahedral(sample.normal.x(), sample.normal.y(), sample.normal.z()),
+                 {static_cast<std::uint8_t>(sample.colour), static_cast<std::uint8_t>(sample.colour >> 8),
+                  static_cast<std::uint8_t>(sample.colour >> 16)},
+                 {bend[0], bend[1], bend[2], bend[3], bend[4]},
+                 place});
         }
     }
 }
@@ -278,7 +288,7 @@ void Assembler::add_info() {
     std::vector<float> radii;
     radii.reserve(model_.surfels.size());
     for (const format::Surfel& surfel : model_.surfels)
-        radii.push_back(surfel.radius);
+        radii.push_back(float_from_half(surfel.radius));
     const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::nth_element(radii.begin(), middle, radii.end());
     info.median_surfel_radius = *middle;

@@ -1,5 +1,5 @@
-// Unit vectors in 32 bits: the octahedral map (Meyer et al. 2010, "On floating-point normal vectors"), two 16-bit snorm.
-// Angular error below 0.004 degrees. shaders/glsl/include/octahedral.glsl decodes the same bits.
+// Unit vectors in 32 bits: the octahedral map (Meyer et al. 2010, "On floating-point normal vectors"), two 16-bit
+// snorm. Angular error below 0.004 degrees. shaders/glsl/include/octahedral.glsl decodes the same bits.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,8 @@ inline std::uint32_t encode_octahedral(float x, float y, float z) {
         u = folded_u;
     }
     const auto snorm = [](float f) {
-        return static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(std::clamp(f, -1.0f, 1.0f) * 32767.0f)));
+        return static_cast<std::uint16_t>(
+            static_cast<std::int16_t>(std::lround(std::clamp(f, -1.0f, 1.0f) * 32767.0f)));
     };
     return static_cast<std::uint32_t>(snorm(u)) | (static_cast<std::uint32_t>(snorm(v)) << 16);
 }

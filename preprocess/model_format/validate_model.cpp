@@ -1,3 +1,4 @@
+#include "preprocess/model_format/half.h"
 #include "preprocess/model_format/validate_model.h"
 
 #include "preprocess/model_format/error.h"
@@ -201,9 +202,10 @@ class Validator {
             const Patch& patch = view_.patches[p];
             for (const Surfel& surfel : view_.surfels.subspan(patch.first_surfel, patch.surfel_count)) {
                 require(all_finite(surfel.position), surfel, "surfel position is not finite");
-                require(surfel.radius >= 0 && surfel.radius <= patch.max_surfel_radius, surfel.radius,
+                const float radius = float_from_half(surfel.radius), epsilon = float_from_half(surfel.epsilon);
+                require(radius >= 0 && radius <= patch.max_surfel_radius, surfel.radius,
                         "surfel radius is not between 0 and the patch's largest");
-                require(surfel.epsilon >= 0 && surfel.epsilon <= patch.max_surfel_epsilon, surfel.epsilon,
+                require(epsilon >= 0 && epsilon <= patch.max_surfel_epsilon, surfel.epsilon,
                         "surfel epsilon is not between 0 and the patch's largest");
                 require(surfel.patch == p, surfel.patch, "surfel of patch ", p, " names patch ", surfel.patch);
             }

@@ -4,6 +4,7 @@
 #include "preprocess/surfel/coverage.h"
 #include "preprocess/surfel/grid_sampling.h"
 #include "preprocess/surfel/morton.h"
+#include "preprocess/surfel/shading_bend.h"
 #include "preprocess/surfel/spacing_field.h"
 #include "preprocess/surfel/surface_point.h"
 #include "preprocess/surfel/surfel_colour.h"
@@ -52,7 +53,8 @@ std::vector<CoverSite> thesis_sites(const IndexedMesh& mesh, std::span<const std
     for (const auto& sample : sample_on_grids(mesh, triangles, h)) {
         const Vec3f face = face_normal(mesh, sample.triangle);
         const Vec3f b = barycentric(mesh, sample.triangle, sample.position);
-        sites.push_back({sample.position, surfel_normal(mesh, sample.triangle, b, face), spacing, sample.triangle, 0});
+        sites.push_back(
+            {sample.position, plane_normal(mesh, sample.triangle, b, face, spacing), spacing, sample.triangle, 0});
     }
     return sites;
 }
@@ -126,6 +128,9 @@ SampledPatch sample_patch(const Inputs& in, std::span<const std::uint32_t> trian
         const float radius = in.options.prune ? site.radius : std::max(site.radius, before_shrinking);
         result.surfels.push_back({site.position, site.normal, radius, before_shrinking, kWhite});
     }
+    const std::vector<ShadingBend> bends = fit_shading_bends(in.mesh, cells, sites);
+    for (std::size_t s = 0; s < sites.size(); ++s)
+        result.surfels[s].shading_bend = encode_shading_bend(bends[s], result.surfels[s].radius);
     add_colours(in, cells, owner, material, result.surfels, sites);
     sort_by_morton_code(result.surfels);
     return result;

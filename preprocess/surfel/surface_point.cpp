@@ -75,4 +75,16 @@ Vec3f surfel_normal(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f
     return (kLeastCosine * face_normal + std::sqrt(1 - kLeastCosine * kLeastCosine) / sine * sideways).normalized();
 }
 
+Vec3f plane_normal(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric, const Vec3f& face_normal,
+                   float spacing) {
+    constexpr float kSmall = 0.5f;  // of the spacing: triangles of that side no longer decide a disk's plane
+    const auto& v = mesh.triangles[triangle];
+    const Vec3f doubled =
+        (mesh.positions[v[1]] - mesh.positions[v[0]]).cross(mesh.positions[v[2]] - mesh.positions[v[0]]);
+    const float side = std::sqrt(0.5f * doubled.norm());
+    const float share = std::clamp((side / spacing - kSmall) / (2 - kSmall), 0.0f, 1.0f);
+    const Vec3f smooth = surfel_normal(mesh, triangle, barycentric, face_normal);
+    return (share * face_normal + (1 - share) * smooth).normalized();
+}
+
 }  // namespace splice

@@ -4,16 +4,18 @@
 #include "preprocess/cluster/patch_set.h"
 #include "preprocess/progress.h"
 
+#include <array>
 #include <optional>
 
 namespace splice {
 
 struct SurfelSample {
     Vec3f position;
-    Vec3f normal;          // unit, interpolated
-    float radius;          // unit-box units
-    float epsilon;         // see format::Surfel
-    std::uint32_t colour;  // sRGB RGBA8, texture and material included, filtered over the disk
+    Vec3f normal;                               // unit, of the disk's plane
+    float radius;                               // unit-box units
+    float epsilon;                              // see format::Surfel
+    std::uint32_t colour;                       // sRGB RGBA8, texture and material included, filtered over the disk
+    std::array<std::int8_t, 5> shading_bend{};  // see format::Surfel
 };
 
 struct SurfelStats {

@@ -34,8 +34,8 @@ void for_each_coverable(const CoverCells& cells, const CoverSite& site, float re
 
 CoverSite site_at(const IndexedMesh& mesh, const CellChunk& chunk, const Vec3f& near) {
     const Vec3f b = barycentric(mesh, chunk.triangle, near);
-    return {point_at(mesh, chunk.triangle, b), surfel_normal(mesh, chunk.triangle, b, chunk.normal), chunk.spacing,
-            chunk.triangle, 0};
+    return {point_at(mesh, chunk.triangle, b), plane_normal(mesh, chunk.triangle, b, chunk.normal, chunk.spacing),
+            chunk.spacing, chunk.triangle, 0};
 }
 
 // The Voronoi diagram of the sites over the cells, distances in units of each site's spacing.

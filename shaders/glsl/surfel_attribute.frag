@@ -9,6 +9,8 @@ layout(location = 2) flat in vec4 in_plane;
 layout(location = 3) flat in vec4 in_offset_interval;
 layout(location = 4) flat in vec4 in_conic_weight;
 layout(location = 5) flat in vec3 in_colour;
+layout(location = 6) flat in vec3 in_colour_u;
+layout(location = 7) flat in vec3 in_colour_v;
 
 layout(location = 0) out vec4 out_sum;  // blended one to one: (w rgb, w)
 
@@ -30,5 +32,7 @@ void main() {
         return;
     }
     const float weight = in_conic_weight.w * exp(-exponent);
-    out_sum = weight * vec4(frame.view == VIEW_DEPTH ? vec3(hit.depth) : in_colour, 1);
+    const vec2 uv = hit.uv * inversesqrt(max(dot(hit.uv, hit.uv), 1));  // no extrapolation beyond the disk
+    const vec3 colour = max(in_colour + in_colour_u * uv.x + in_colour_v * uv.y, 0);
+    out_sum = weight * vec4(frame.view == VIEW_DEPTH ? vec3(hit.depth) : colour, 1);
 }

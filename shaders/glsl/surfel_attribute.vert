@@ -1,4 +1,5 @@
-// Attribute pass: every surfel's lit colour, weighted by the EWA resampling filter (thesis 3.4.2), lit once a surfel.
+// Attribute pass: every surfel's lit colour, weighted by the EWA resampling filter (thesis 3.4.2). Lit once a surfel, to
+// first order: the colour at the centre and how it changes along both tangents, as the normal turns across the disk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -14,16 +15,35 @@ layout(location = 2) flat out vec4 out_plane;
 layout(location = 3) flat out vec4 out_offset_interval;
 layout(location = 4) flat out vec4 out_conic_weight;
 layout(location = 5) flat out vec3 out_colour;
+layout(location = 6) flat out vec3 out_colour_u;  // change a radius
+layout(location = 7) flat out vec3 out_colour_v;
+
+// format::kLargestBend
+const vec2 LARGEST_LEAN = vec2(1);
+const vec3 LARGEST_TURN = vec3(0.5);
+
+// `side`: 1, or -1 where a two-sided surface is seen from behind. `uv`: on the disk, in radii.
+vec3 colour_at(SurfelFrame surfel, float side, vec2 uv) {
+    const vec2 lean = LARGEST_LEAN * vec2(in_bend_0, in_bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * in_bend_1_4.yzw;
+    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
+    const vec3 normal = normalize(surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t);
+    const vec3 position = surfel.centre + surfel.radius * (uv.x * surfel.s + uv.y * surfel.t);
+    return view_colour(decode_srgb(in_colour.rgb), side * normal, position, in_patch, true);
+}
 
 void main() {
     Splat splat;
-    vec3 centre, normal;
-    const bool drawn = surfel_splat(splat, centre, normal);
+    SurfelFrame surfel;
+    const bool drawn = surfel_splat(splat, surfel);
     place_primitive(drawn, splat.anchor, splat.splat_bounds);
     out_anchor = splat.anchor;
     out_plane_map = splat.plane_map;
     out_plane = splat.plane;
     out_offset_interval = vec4(splat.plane_offset, splat.interval);
     out_conic_weight = vec4(splat.conic, splat.weight);
-    out_colour = view_colour(decode_srgb(in_colour.rgb), face_the_eye(normal, centre), centre, in_patch, true);
+    const float side = dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1;
+    out_colour = colour_at(surfel, side, vec2(0));
+    out_colour_u = 0.5 * (colour_at(surfel, side, vec2(1, 0)) - colour_at(surfel, side, vec2(-1, 0)));
+    out_colour_v = 0.5 * (colour_at(surfel, side, vec2(0, 1)) - colour_at(surfel, side, vec2(0, -1)));
 }

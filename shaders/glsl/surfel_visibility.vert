@@ -14,8 +14,8 @@ layout(location = 4) flat out float out_epsilon;
 
 void main() {
     Splat splat;
-    vec3 centre, normal;
-    const bool drawn = surfel_splat(splat, centre, normal);
+    SurfelFrame surfel;
+    const bool drawn = surfel_splat(splat, surfel);
     place_primitive(drawn, splat.anchor, splat.disk_bounds);
     out_anchor = splat.anchor;
     out_plane_map = splat.plane_map;

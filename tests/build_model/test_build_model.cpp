@@ -2,6 +2,7 @@
 #include "preprocess/build_model/normal_cone.h"
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/model_format/error.h"
+#include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 #include "tests/support/test_files.h"
 
@@ -125,7 +126,7 @@ TEST_CASE("patch bounds hold triangles and disks") {
             const Vec3f s = normal.unitOrthogonal(), t = normal.cross(s);
             for (int k = 0; k < 16; ++k) {
                 const float angle = static_cast<float>(k) * 0.3926991f;
-                const Vec3f p = vec(surfel.position) + surfel.radius * (std::cos(angle) * s + std::sin(angle) * t);
+                const Vec3f p = vec(surfel.position) + float_from_half(surfel.radius) * (std::cos(angle) * s + std::sin(angle) * t);
                 CHECK((p.array() >= low.array() - 1e-6f).all());
                 CHECK((p.array() <= high.array() + 1e-6f).all());
             }

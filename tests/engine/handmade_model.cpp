@@ -1,5 +1,6 @@
 #include "tests/engine/handmade_model.h"
 
+#include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 
 #include <algorithm>
@@ -48,15 +49,16 @@ HandmadeModel& HandmadeModel::add_surfels(const std::vector<Disk>& disks) {
     for (const Disk& disk : disks) {
         format::Surfel surfel{};
         std::memcpy(surfel.position, &disk.centre, sizeof surfel.position);
-        surfel.radius = disk.radius;
+        surfel.radius = half_at_least(disk.radius);
         surfel.normal = encode_octahedral(disk.normal.x, disk.normal.y, disk.normal.z);
-        surfel.colour = disk.colour;
-        surfel.epsilon = disk.epsilon;
+        for (int channel = 0; channel < 3; ++channel)
+            surfel.colour[channel] = static_cast<std::uint8_t>(disk.colour >> 8 * channel);
+        surfel.epsilon = half_at_least(disk.epsilon);
         surfel.patch = static_cast<std::uint32_t>(model_.patches.size());
         model_.surfels.push_back(surfel);
-        extend(patch, disk.centre, disk.radius);
-        patch.max_surfel_radius = std::max(patch.max_surfel_radius, disk.radius);
-        patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, disk.epsilon);
+        extend(patch, disk.centre, float_from_half(surfel.radius));
+        patch.max_surfel_radius = std::max(patch.max_surfel_radius, float_from_half(surfel.radius));
+        patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, float_from_half(surfel.epsilon));
     }
     model_.patches.push_back(patch);
     return *this;

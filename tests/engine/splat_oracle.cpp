@@ -1,5 +1,7 @@
 #include "tests/engine/splat_oracle.h"
 
+#include "preprocess/model_format/half.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,7 +26,7 @@ SplatOracle::SplatOracle(const Disk& disk, const Camera& camera, std::uint32_t w
       height_(height),
       scale_(pixel_scale(camera, height)),
       prefilter_(prefilter),
-      radius_(disk.radius) {
+      radius_(float_from_half(half_at_least(disk.radius))) {
     const glm::dmat4 view = view_matrix(camera);
     centre_ = glm::dvec3(view * glm::dvec4(glm::dvec3(disk.centre), 1));
     normal_ = glm::normalize(glm::dmat3(view) * glm::dvec3(disk.normal));

@@ -1,5 +1,7 @@
 #include "tests/reference/surfel_tolerance.h"
 
+#include "preprocess/model_format/half.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,13 +23,13 @@ Tolerance surfel_tolerance(const ModelView& model, const ReferenceView& view, co
     for (const format::Surfel& surfel : model.surfels) {
         const glm::dvec4 eye = view.view * glm::dvec4(surfel.position[0], surfel.position[1], surfel.position[2], 1);
         const glm::dvec4 clip = view.projection * eye;
-        const double radius = surfel.radius * unit;
+        const double radius = float_from_half(surfel.radius) * unit;
         const double nearest = view.perspective() ? std::max(-eye.z - radius, 1e-6) : 1.0;
         if (view.perspective() && -eye.z + radius <= 0) continue;  // behind the eye
         const double radius_px = radius * focal_px / nearest;
         const double w = view.perspective() ? nearest : clip.w;
         const double cx = (clip.x / w + 1) * 0.5 * view.width, cy = (clip.y / w + 1) * 0.5 * view.height;
-        const double depth_tolerance = (2 * epsilon_scale + 1) * surfel.epsilon * unit;
+        const double depth_tolerance = (2 * epsilon_scale + 1) * float_from_half(surfel.epsilon) * unit;
         const double reach = radius_px + 1;
         for (std::int64_t y = std::max<std::int64_t>(0, clamp_pixel(cy - reach, view.height));
              y <= std::min<std::int64_t>(view.height - 1, clamp_pixel(cy + reach, view.height)); ++y)

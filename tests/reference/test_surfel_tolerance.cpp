@@ -1,3 +1,4 @@
+#include "preprocess/model_format/half.h"
 #include "tests/reference/surfel_tolerance.h"
 
 #include <catch2/catch.hpp>
@@ -21,8 +22,8 @@ Model one_surfel(float x, float y, float z, float radius, float epsilon) {
     surfel.position[0] = x;
     surfel.position[1] = y;
     surfel.position[2] = z;
-    surfel.radius = radius;
-    surfel.epsilon = epsilon;
+    surfel.radius = half_at_least(radius);
+    surfel.epsilon = half_at_least(epsilon);
     model.surfels = {surfel};
     return model;
 }

@@ -15,7 +15,7 @@
 struct Splat {
     vec2 anchor;        // window position of P
     vec4 plane_map;     // A, column by column
-    vec4 plane;         // g, t_P, and 1 if P is the centre, else 0
+    vec4 plane;         // g, t_P, and 1 if the disk may fall between pixel centres, else 0
     vec2 plane_offset;  // a
     vec2 interval;      // nearest and farthest depth of the disk
     float epsilon;      // by how much the visibility pass moves depth away, along the ray, world units
@@ -35,7 +35,10 @@ const float MAX_STRETCH = 3.0;
 const float MIN_COSINE = 1e-6;
 const float MIN_WEIGHT = 1.0 / 4096.0;
 const float NOWHERE = 1e18;
+const float PREFILTER = 0.3;
+const float LARGEST_SUBPIXEL = 1.5;  // pixels; a disk less wide than sqrt(2) may miss all pixel centres
 
+// preprocess/model_format/tangent_frame.h computes the same.
 void tangents_of(vec3 n, out vec3 s, out vec3 t) {
     // Duff et al. 2017, "Building an orthonormal basis, revisited".
     const float side = n.z >= 0 ? 1.0 : -1.0;
@@ -61,11 +64,9 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
     return vec2(qb - root, qb + root) / qa;
 }
 
-// `centre` and unit `normal` in view space, `radius` and `epsilon` in world units. False: nothing of it can be seen.
-bool make_splat(vec3 centre, vec3 normal, float radius, float epsilon, out Splat splat) {
+// `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing of it can be seen.
+bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float epsilon, out Splat splat) {
     const bool orthographic = frame.orthographic != 0;
-    vec3 s, t;
-    tangents_of(normal, s, t);
     const float depth = -centre.z;
     const vec2 slope = vec2(-s.z, -t.z);  // change of depth along the tangents
     const float steepness = length(slope);
@@ -89,7 +90,7 @@ bool make_splat(vec3 centre, vec3 normal, float radius, float epsilon, out Splat
     const vec3 along_x = (dx - g.x * ray) * reach, along_y = (dy - g.y * ray) * reach;
     splat.anchor = project_to_window(p);
     splat.plane_map = vec4(dot(s, along_x), dot(t, along_x), dot(s, along_y), dot(t, along_y));
-    splat.plane = vec4(g, anchor_depth, crosses_near ? 0 : 1);
+    splat.plane = vec4(g, anchor_depth, 0);
     splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
 
     if (crosses_near) {
@@ -115,6 +116,10 @@ bool make_splat(vec3 centre, vec3 normal, float radius, float epsilon, out Splat
         const vec2 y = projected_extremes(-centre.y, -s.y, -t.y, depth, slope.x, slope.y, radius);
         splat.disk_bounds = frame.viewport.xyxy * 0.5 + frame.pixel_scale * vec4(x.x, y.x, x.y, y.y);
     }
+    // A disk smaller than a pixel shows at the pixel that holds its centre. A larger one that is merely thin, because it
+    // is seen edge-on, must not: it would grow the outline.
+    const vec2 disk_extent = splat.disk_bounds.zw - splat.disk_bounds.xy;
+    splat.plane.w = max(disk_extent.x, disk_extent.y) < LARGEST_SUBPIXEL ? 1 : 0;
     if (frame.prefilter == 0) {
         splat.conic = vec3(NOWHERE, 0, NOWHERE);
         splat.weight = 1;
@@ -122,7 +127,7 @@ bool make_splat(vec3 centre, vec3 normal, float radius, float epsilon, out Splat
         return true;
     }
     // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1.
-    const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * 0.5 + vec3(1, 0, 1);
+    const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * 0.5 + PREFILTER * vec3(1, 0, 1);
     const float determinant = v.x * v.z - v.y * v.y;
     splat.conic = vec3(v.z, -v.y, v.x) / determinant;
     // A Gaussian of height 1 on the surface, filtered by the pixel's of volume 1: sqrt(|J V_r J^T| / |V|). Splats
@@ -138,6 +143,7 @@ struct SplatHit {
     bool on_disk;     // the ray meets the disk, or the pixel holds the centre of a disk that it misses
     float depth;      // of the surface there, on the disk's plane clamped to the disk's interval
     float distance2;  // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
+    vec2 uv;          // where the ray meets the plane, in radii
 };
 
 SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec4 plane, vec2 plane_offset, vec2 interval) {
@@ -149,10 +155,11 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec4 plane, vec2 plan
     const float plane_depth = frame.orthographic != 0 ? plane.z - gd : (e > 0 ? plane.z / e : interval.y);
     SplatHit hit;
     hit.depth = clamp(plane_depth, interval.x, interval.y);
+    hit.uv = e > 0 ? uv / e : vec2(0);
     hit.on_disk = e > 0 && distance2 <= e * e && plane_depth >= frame.near_plane;
     hit.distance2 = hit.on_disk ? distance2 / (e * e) : NOWHERE;
     // A disk may lie between pixel centres; then it shows at the pixel that holds its centre.
-    if (!hit.on_disk && plane.w != 0 && floor(pixel) == floor(anchor)) {
+    if (!hit.on_disk && plane.w != 0 && dot(d, d) < 1e-09) {
         hit.on_disk = true;
         hit.depth = plane.z;
     }

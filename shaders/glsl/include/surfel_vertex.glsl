@@ -7,11 +7,12 @@
 layout(constant_id = 0) const bool AS_QUADS = false;
 
 layout(location = 0) in vec3 in_position;
-layout(location = 1) in float in_radius;
+layout(location = 1) in vec2 in_radius_epsilon;
 layout(location = 2) in vec2 in_normal;   // octahedral
 layout(location = 3) in vec4 in_colour;   // sRGB-encoded
-layout(location = 4) in float in_epsilon;
+layout(location = 4) in float in_bend_0;  // format::Surfel::shading_bend, 1 for the largest
 layout(location = 5) in uint in_patch;
+layout(location = 6) in vec4 in_bend_1_4;
 
 const float SLACK_PX = 0.05;  // rasterisers snap positions to 1/256 pixel or so
 
@@ -26,18 +27,28 @@ bool in_sample(vec3 position) {
     return float(h >> 8) < frame.sample_share * 16777216.0;
 }
 
+struct SurfelFrame {
+    vec3 centre, normal, s, t;  // view space; s and t as format::Surfel::shading_bend means them
+    float radius;               // world units
+};
+
 // The splat of this vertex's surfel; false if it is not to be drawn.
-bool surfel_splat(out Splat splat, out vec3 centre, out vec3 normal) {
-    centre = to_view_space(in_position);
-    normal = normal_to_view_space(decode_octahedral(in_normal));
+bool surfel_splat(out Splat splat, out SurfelFrame surfel) {
+    const vec3 centre = surfel.centre = to_view_space(in_position);
+    const vec3 model_normal = decode_octahedral(in_normal);
+    const vec3 normal = surfel.normal = normal_to_view_space(model_normal);
+    tangents_of(model_normal, surfel.s, surfel.t);
+    surfel.s = normal_to_view_space(surfel.s);
+    surfel.t = normal_to_view_space(surfel.t);
     const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
     if (!two_sided && dot(normal, towards_eye(centre)) <= 0) return false;
-    float radius = in_radius * instance.scale;
+    float radius = in_radius_epsilon.x * instance.scale;
     if (frame.view == VIEW_SAMPLES) {
         if (!in_sample(in_position)) return false;
         radius *= frame.sample_radius;
     }
-    return make_splat(centre, normal, radius, in_epsilon * instance.scale * instance.epsilon_scale, splat);
+    surfel.radius = radius;
+    return make_splat(centre, normal, surfel.s, surfel.t, radius, in_radius_epsilon.y * instance.scale * instance.epsilon_scale, splat);
 }
 
 // Places this vertex so that the primitive covers every pixel of `bounds` and the one that holds the centre.

@@ -17,6 +17,7 @@ struct QualityOptions {
     bool orthographic = false;
     double epsilon_scale = 1;
     Sides sides = Sides::kAsBaked;
+    bool prefilter = true;
     BakeOptions bake;
     std::filesystem::path pictures;  // empty: none are written
 };

@@ -98,6 +98,8 @@ int run(int argc, char** argv) {
     capture.add_option("--frames", capture_line.quality.frames, "Timed frames a model")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    capture.add_flag_callback(
+        "--no-prefilter", [&] { capture_line.quality.prefilter = false; }, "Splats without the screen-space filter");
 
     CLI::App& holes =
         *app.add_subcommand("holes", "Holes, lost features and growth, from all sides; exit code 1 if any");

@@ -68,8 +68,6 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting) 
     uniforms.pixel_scale = static_cast<float>(pixel_scale(camera, settings.height));
     uniforms.near_plane = static_cast<float>(camera.near_plane);
     uniforms.far_plane = static_cast<float>(camera.far_plane);
-    uniforms.orthographic = camera.orthographic ? 1 : 0;
-    uniforms.view = static_cast<std::uint32_t>(settings.view);
     uniforms.prefilter = settings.prefilter ? 1 : 0;
     uniforms.ambient = glm::vec3(lighting.ambient);
     uniforms.light_count = static_cast<std::uint32_t>(lighting.lights.size());
@@ -85,6 +83,15 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting) 
         records.push_back(light_record(light, view));
     reserve_lights(records.size());
     if (!records.empty()) std::memcpy(lights_.mapped().data(), records.data(), records.size() * sizeof(LightRecord));
+}
+
+FrameVariant frame_variant(const FrameSettings& settings) {
+    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u};
+}
+
+std::map<std::uint32_t, std::uint32_t> frame_constants(const FrameSettings& settings) {
+    const FrameVariant variant = frame_variant(settings);
+    return {{1, variant.view}, {2, variant.orthographic}};
 }
 
 InstanceConstants instance_constants(const InstanceDraws& draws, double epsilon_scale) {

@@ -11,7 +11,9 @@
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/pipeline.h"
 
+#include <compare>
 #include <cstdint>
+#include <map>
 
 namespace splice {
 
@@ -47,6 +49,15 @@ class FrameData {
     gpu::Buffer uniforms_, lights_;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
+
+/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl.
+struct FrameVariant {
+    std::uint32_t view;
+    std::uint32_t orthographic;
+    auto operator<=>(const FrameVariant&) const = default;
+};
+FrameVariant frame_variant(const FrameSettings& settings);
+std::map<std::uint32_t, std::uint32_t> frame_constants(const FrameSettings& settings);
 
 InstanceConstants instance_constants(const InstanceDraws& draws, double epsilon_scale);
 

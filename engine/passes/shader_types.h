@@ -15,15 +15,14 @@ struct FrameUniforms {
     float pixel_scale;
     float near_plane;
     float far_plane;
-    std::uint32_t orthographic;
-    std::uint32_t view;
     std::uint32_t prefilter;
+    float sample_share;
+    float sample_radius;
     glm::vec3 ambient;
     std::uint32_t light_count;
     float specular;
     float shininess;
-    float sample_share;
-    float sample_radius;
+    float padding[2];  // std140 rounds the block up to 16 bytes
 };
 static_assert(sizeof(FrameUniforms) == 128 && offsetof(FrameUniforms, ambient) == 96);
 

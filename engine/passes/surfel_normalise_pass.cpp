@@ -3,6 +3,7 @@
 #include "shaders/surfel_normalise_frag.h"
 #include "shaders/surfel_normalise_vert.h"
 
+#include <array>
 #include <limits>
 
 namespace splice {
@@ -41,14 +42,16 @@ void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const 
     pass.depth_stencil_read(targets.depth);
     targets.picture =
         pass.colour_attachment(targets.picture, graph::Contents::clear(empty_picture(settings.view, background)));
-    pass.record([this, targets](const graph::PassContext& context) { draw(context, targets); });
+    pass.record([this, targets, &settings](const graph::PassContext& context) { draw(context, targets, settings); });
 }
 
-void SurfelNormalisePass::draw(const graph::PassContext& context, const FrameTargets& targets) {
+void SurfelNormalisePass::draw(const graph::PassContext& context, const FrameTargets& targets,
+                               const FrameSettings& settings) {
     const std::array sets{data_.set(), input_set(context, targets)};
     for (const std::uint32_t owner : {kTriangleStencil, kSurfelStencil}) {
         vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                          pipelines_[owner].get(device_, context, [&] { return pipeline_options(owner); }));
+                          pipelines_[{frame_variant(settings), owner}].get(
+                              device_, context, [&] { return pipeline_options(settings, owner); }));
         vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0,
                                 static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
         vkCmdDraw(context.commands, 3, 1, 0, 0);
@@ -67,11 +70,13 @@ VkDescriptorSet SurfelNormalisePass::input_set(const graph::PassContext& context
     return inputs_.set;
 }
 
-gpu::GraphicsPipelineOptions SurfelNormalisePass::pipeline_options(std::uint32_t owner) const {
+gpu::GraphicsPipelineOptions SurfelNormalisePass::pipeline_options(const FrameSettings& settings,
+                                                                   std::uint32_t owner) const {
     gpu::GraphicsPipelineOptions options;
     options.name = "surfel_normalise";
     options.vertex = {&vertex_, {}};
-    options.fragment = {&fragment_, {{0, owner == kSurfelStencil ? 1u : 0u}}};
+    options.fragment = {&fragment_, frame_constants(settings)};
+    options.fragment.constants[0] = owner == kSurfelStencil ? 1u : 0u;
     options.layout = layout_.handle();
     options.stencil_test = true;
     options.stencil_front = owned_by(owner);

@@ -6,8 +6,9 @@
 #include "engine/passes/frame_targets.h"
 #include "engine/render_graph/executor/executor.h"
 
-#include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 
 namespace splice {
 
@@ -21,9 +22,9 @@ class SurfelNormalisePass {
         std::uint64_t plan_id = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
     };
-    void draw(const graph::PassContext& context, const FrameTargets& targets);
+    void draw(const graph::PassContext& context, const FrameTargets& targets, const FrameSettings& settings);
     VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets);
-    gpu::GraphicsPipelineOptions pipeline_options(std::uint32_t owner) const;
+    gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, std::uint32_t owner) const;
 
     const gpu::Device& device_;
     const FrameData& data_;
@@ -32,7 +33,7 @@ class SurfelNormalisePass {
     gpu::ShaderModule vertex_, fragment_;
     gpu::DescriptorPool pool_;
     Inputs inputs_;
-    std::array<graph::PassPipelines, 2> pipelines_;  // by owner
+    std::map<std::pair<FrameVariant, std::uint32_t>, graph::PassPipelines> pipelines_;  // by owner
 };
 
 }  // namespace splice

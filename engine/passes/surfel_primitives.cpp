@@ -2,6 +2,8 @@
 
 #include "engine/scene/gpu_model.h"
 
+#include <array>
+
 namespace splice {
 
 namespace {
@@ -46,12 +48,14 @@ void SurfelPrimitives::draw_ranges(const graph::PassContext& context, const Fram
     const auto& ranges = quads ? instance.quads : instance.sprites;
     if (ranges.empty()) return;
     const VkCommandBuffer commands = context.commands;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines_[quads ? 1 : 0].get(device_, context, [&] {
-        gpu::GraphicsPipelineOptions all = options();
-        all.layout = layout_.handle();
-        add_surfel_input(all, quads);
-        return all;
-    }));
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                      pipelines_[{frame_variant(settings), quads}].get(device_, context, [&] {
+                          gpu::GraphicsPipelineOptions all = options();
+                          all.layout = layout_.handle();
+                          all.vertex.constants = all.fragment.constants = frame_constants(settings);
+                          add_surfel_input(all, quads);
+                          return all;
+                      }));
     const VkDescriptorSet frame_set = data_.set();
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0, 1, &frame_set, 0, nullptr);
     const InstanceConstants constants = instance_constants(instance, settings.epsilon_scale);

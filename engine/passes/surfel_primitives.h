@@ -6,8 +6,9 @@
 #include "engine/render_graph/executor/executor.h"
 #include "engine/scene/draw_list.h"
 
-#include <array>
 #include <functional>
+#include <map>
+#include <utility>
 
 namespace splice {
 
@@ -17,8 +18,8 @@ class SurfelPrimitives {
 
     VkPipelineLayout layout() const { return layout_.handle(); }
 
-    /// Draws the surfels of the list. `options` gives the pass's own state; vertex input, topology and layout are
-    /// filled in here.
+    /// Draws the surfels of the list. `options` gives the pass's own state; vertex input, topology, layout and
+    /// constants are filled in here.
     void draw(const graph::PassContext& context, const FrameSettings& settings, const DrawList& draws,
               const std::function<gpu::GraphicsPipelineOptions()>& options);
 
@@ -29,7 +30,7 @@ class SurfelPrimitives {
     const gpu::Device& device_;
     const FrameData& data_;
     gpu::PipelineLayout layout_;
-    std::array<graph::PassPipelines, 2> pipelines_;  // sprites, quads
+    std::map<std::pair<FrameVariant, bool>, graph::PassPipelines> pipelines_;  // quads
 };
 
 }  // namespace splice

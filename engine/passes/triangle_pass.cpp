@@ -5,6 +5,8 @@
 #include "shaders/triangle_frag.h"
 #include "shaders/triangle_vert.h"
 
+#include <array>
+
 namespace splice {
 
 namespace {
@@ -44,9 +46,9 @@ void TrianglePass::draw(const graph::PassContext& context, const FrameSettings& 
     const VkCommandBuffer commands = context.commands;
     for (const InstanceDraws& instance : draws.instances) {
         if (instance.triangles.empty()) continue;
-        const std::size_t variant = (wires ? 2u : 0u) + (instance.two_sided ? 1u : 0u);
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines_[variant].get(device_, context, [&] {
-            return pipeline_options(wires, instance.two_sided);
+        graph::PassPipelines& pipelines = pipelines_[{frame_variant(settings), wires, instance.two_sided}];
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.get(device_, context, [&] {
+            return pipeline_options(settings, wires, instance.two_sided);
         }));
         const VkDescriptorSet frame_set = data_.set();
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0, 1, &frame_set, 0,
@@ -72,11 +74,13 @@ void TrianglePass::draw(const graph::PassContext& context, const FrameSettings& 
     }
 }
 
-gpu::GraphicsPipelineOptions TrianglePass::pipeline_options(bool wires, bool two_sided) const {
+gpu::GraphicsPipelineOptions TrianglePass::pipeline_options(const FrameSettings& settings, bool wires,
+                                                            bool two_sided) const {
     gpu::GraphicsPipelineOptions options;
     options.name = wires ? "triangle wires" : "triangle";
-    options.vertex = {&vertex_, {}};
-    options.fragment = {&fragment_, {{0, wires ? 1u : 0u}}};
+    options.vertex = {&vertex_, frame_constants(settings)};
+    options.fragment = {&fragment_, frame_constants(settings)};
+    options.fragment.constants[0] = wires ? 1u : 0u;
     options.layout = layout_.handle();
     options.vertex_bindings = {{0, sizeof(format::Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};
     options.vertex_attributes = {

@@ -6,7 +6,8 @@
 #include "engine/render_graph/executor/executor.h"
 #include "engine/scene/draw_list.h"
 
-#include <array>
+#include <map>
+#include <tuple>
 
 namespace splice {
 
@@ -17,14 +18,14 @@ class TrianglePass {
 
   private:
     void draw(const graph::PassContext& context, const FrameSettings& settings, const DrawList& draws, bool wires);
-    gpu::GraphicsPipelineOptions pipeline_options(bool wires, bool two_sided) const;
+    gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, bool wires, bool two_sided) const;
 
     const gpu::Device& device_;
     const FrameData& data_;
     gpu::DescriptorSetLayout material_layout_;
     gpu::PipelineLayout layout_;
     gpu::ShaderModule vertex_, fragment_;
-    std::array<graph::PassPipelines, 4> pipelines_;  // by wires and sides
+    std::map<std::tuple<FrameVariant, bool, bool>, graph::PassPipelines> pipelines_;  // wires, two-sided
 };
 
 }  // namespace splice

@@ -175,15 +175,21 @@ PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, co
     Stopwatch watch;
     FaceGraph faces;
     Settings settings{};
-    std::vector<float> scores;
+    std::optional<SurfaceGrid> grid;
+    FaceRoughness roughness;
     FaceAdjacency adjacency;
     tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh); },
                          [&] {
                              faces = order_faces(mesh);
                              settings = resolve(options, faces);
-                             if (settings.scored()) scores = score_faces(faces, measure_roughness(mesh, faces));
+                             if (!settings.scored()) return;
+                             grid.emplace(mesh, faces);
+                             roughness = grid->measure(faces);
                          });
     faces.links = link_faces(mesh, faces, adjacency);
+    std::vector<float> scores;
+    if (settings.scored()) scores = score_faces(mesh, faces, *grid, roughness);
+    grid.reset();
     adjacency = {};
     const std::size_t count = faces.size();
 

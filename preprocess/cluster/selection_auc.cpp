@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace splice {
 namespace {
 
-constexpr std::size_t kPoints = 100'000;
-constexpr std::size_t kEvery = 5;  // each fifth point is compared
+constexpr double kNeighbours = 40;  // points on a disk of one radius
+constexpr double kMinPoints = 2'000;
+constexpr double kMaxPoints = 80'000;
+constexpr std::size_t kEvery = 4;  // each fourth point is compared
 constexpr std::size_t kSide = 51;  // blocks of one radius across the unit box, one to spare
 
 struct Point {
@@ -24,13 +27,15 @@ std::vector<Point> spread_points(const IndexedMesh& mesh, const FaceGraph& faces
     double total = 0;
     for (const float a : faces.area)
         total += static_cast<double>(a);
-    const double step = total / static_cast<double>(kPoints);
+    constexpr double kDisk = std::numbers::pi * double{kRoughnessRadius} * double{kRoughnessRadius};
+    const auto count = static_cast<std::size_t>(std::clamp(kNeighbours * total / kDisk, kMinPoints, kMaxPoints));
+    const double step = total / static_cast<double>(count);
     std::vector<Point> points;
-    points.reserve(kPoints);
+    points.reserve(count);
     double passed = 0;
     for (std::size_t s = 0; s < faces.size(); ++s) {
         passed += static_cast<double>(faces.area[s]);
-        while (points.size() < kPoints && (static_cast<double>(points.size()) + 0.5) * step < passed) {
+        while (points.size() < count && (static_cast<double>(points.size()) + 0.5) * step < passed) {
             const auto i = static_cast<double>(points.size());
             double u = std::fmod(0.5 + i * 0.7548776662466927, 1.0), v = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
             if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -127,6 +132,8 @@ double area_under_curve(std::vector<Compared> compared) {
 
 double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces,
                              const std::vector<std::uint8_t>& surfel_slot) {
+    const auto surfels = static_cast<std::size_t>(std::count(surfel_slot.begin(), surfel_slot.end(), 1));
+    if (surfels == 0 || surfels == surfel_slot.size()) return 0.5;
     const std::vector<Point> points = spread_points(mesh, faces);
     const PointGrid grid(faces, points);
     std::vector<Compared> compared((points.size() + kEvery - 1) / kEvery);

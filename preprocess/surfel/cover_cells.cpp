@@ -12,6 +12,7 @@ namespace splice {
 namespace {
 
 constexpr float kCellsPerChunk = 48;
+constexpr std::uint32_t kCellsPerGroup = 24;
 constexpr float kSpacingsPerChunk = 4;    // longest edge of a chunk
 constexpr float kLeastUniformity = 0.8f;  // smallest spacing in a chunk over the one that all its cells get
 // Rounding of centres and radii stays below this: positions are within the unit box, so a float's last bit is 6e-8.
@@ -37,6 +38,7 @@ CoverCells::CoverCells(const IndexedMesh& mesh, std::span<const std::uint32_t> t
         cut_triangle(mesh, t, spacing, relative_size);
     sort_chunks();
     add_cells();
+    group_chunks();
     build_tree();
 }
 
@@ -106,27 +108,56 @@ void CoverCells::add_cells() {
     }
 }
 
-void CoverCells::build_tree() {
-    std::vector<Box> boxes;
-    boxes.reserve(chunks.size());
-    for (const auto& chunk : chunks) {
-        const auto& p = chunk.corner;
-        boxes.push_back({p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2])});
+void CoverCells::group_chunks() {
+    for (std::uint32_t first = 0; first < chunks.size();) {
+        std::uint32_t end = first;
+        Vec3f sum = Vec3f::Zero();
+        while (end < chunks.size() && chunks[end].first - chunks[first].first < kCellsPerGroup)
+            sum += chunks[end++].normal;
+        const Vec3f axis = sum.squaredNorm() > 0 ? Vec3f(sum.normalized()) : chunks[first].normal;
+        float cosine = 1;
+        for (auto c = first; c < end; ++c)
+            cosine = std::min(cosine, axis.dot(chunks[c].normal));
+        groups_.push_back({first, end, chunks[first].first, chunks[end - 1].first + chunks[end - 1].count, axis, cosine,
+                           std::sqrt(std::max(0.0f, 1 - cosine * cosine))});
+        first = end;
     }
-    levels_.push_back(std::move(boxes));
-    while (levels_.back().size() > 1) {
-        const auto& below = levels_.back();
-        std::vector<Box> above;
-        above.reserve(below.size() / kBranching + 1);
-        for (std::size_t i = 0; i < below.size(); ++i) {
-            if (i % kBranching == 0) {
-                above.push_back(below[i]);
-            } else {
-                above.back().low = above.back().low.cwiseMin(below[i].low);
-                above.back().high = above.back().high.cwiseMax(below[i].high);
+}
+
+void CoverCells::build_tree() {
+    std::vector<std::array<Vec3f, 2>> boxes;  // least and greatest corner
+    boxes.reserve(groups_.size());
+    for (const auto& group : groups_) {
+        Vec3f low = chunks[group.first_chunk].corner[0], high = low;
+        for (auto c = group.first_chunk; c < group.end_chunk; ++c) {
+            for (const auto& p : chunks[c].corner) {
+                low = low.cwiseMin(p);
+                high = high.cwiseMax(p);
             }
         }
-        levels_.push_back(std::move(above));
+        boxes.push_back({low, high});
+    }
+    while (!boxes.empty()) {
+        std::vector<Node> nodes((boxes.size() + kBranching - 1) / kBranching);
+        std::vector<std::array<Vec3f, 2>> above;
+        for (std::size_t i = 0; i < nodes.size() * kBranching; ++i) {
+            const std::size_t k = i % kBranching;
+            const bool present = i < boxes.size();
+            for (int axis = 0; axis < 3; ++axis) {
+                nodes[i / kBranching].low[axis][k] = present ? boxes[i][0][axis] : std::numeric_limits<float>::max();
+                nodes[i / kBranching].high[axis][k] = present ? boxes[i][1][axis] : -std::numeric_limits<float>::max();
+            }
+            if (!present) continue;
+            if (k == 0) {
+                above.push_back(boxes[i]);
+            } else {
+                above.back()[0] = above.back()[0].cwiseMin(boxes[i][0]);
+                above.back()[1] = above.back()[1].cwiseMax(boxes[i][1]);
+            }
+        }
+        levels_.push_back(std::move(nodes));
+        if (above.size() == 1) break;
+        boxes = std::move(above);
     }
 }
 

@@ -28,6 +28,9 @@ struct CellChunk {
     float cell_size;
 };
 
+/// Cosine of the largest angle between the normals of a disk and of a cell that it covers.
+inline constexpr float kLeastAgreement = 0.5f;
+
 class CoverCells {
   public:
     using Spacing = std::function<float(std::uint32_t triangle, const Vec3f& point)>;
@@ -39,9 +42,10 @@ class CoverCells {
     std::size_t size() const { return x.size(); }
     Vec3f centre(std::size_t cell) const { return {x[cell], y[cell], z[cell]}; }
 
-    /// Calls visit(chunk) for every chunk whose box meets the ball.
+    /// Calls visit(first, end) for ranges of cells that hold at least all cells within the ball whose normal is at most
+    /// 60 degrees from `normal` (kLeastAgreement), and no cell that disagrees more.
     template <typename Visit>
-    void for_each_chunk_near(const Vec3f& ball_centre, float ball_radius, Visit&& visit) const;
+    void for_each_range_near(const Vec3f& ball_centre, float ball_radius, const Vec3f& normal, Visit&& visit) const;
 
     /// Calls visit(cell, corners) for the cells of a chunk: the four corners whose convex hull is the cell.
     template <typename Visit>
@@ -55,38 +59,65 @@ class CoverCells {
     std::vector<CellChunk> chunks;  // in Morton order
 
   private:
-    struct Box {
-        Vec3f low, high;
+    static constexpr std::size_t kBranching = 4;
+    // The bounding boxes of a node's children side by side, so that one pass of vector instructions tests them all;
+    // boxes of absent children are inside out.
+    struct Node {
+        float low[3][kBranching], high[3][kBranching];
+    };
+    // Chunks in a row, so that the search ends at runs of cells long enough to be worth it.
+    struct Group {
+        std::uint32_t first_chunk, end_chunk, first_cell, end_cell;
+        Vec3f axis;  // of a cone that holds the chunks' normals
+        float cosine, sine;
     };
     void cut_triangle(const IndexedMesh& mesh, std::uint32_t triangle, const Spacing& spacing, float relative_size);
     void sort_chunks();
     void add_cells();
+    void group_chunks();
     void build_tree();
 
-    static constexpr std::size_t kBranching = 4;
-    std::vector<std::vector<Box>>
-        levels_;  // [0]: one a chunk; box i of a level bounds boxes 4 i .. 4 i + 3 of the one before
+    std::vector<Group> groups_;
+    std::vector<std::vector<Node>> levels_;  // children of node i: groups or nodes of the level before, 4 i .. 4 i + 3
 };
 
 template <typename Visit>
-void CoverCells::for_each_chunk_near(const Vec3f& ball_centre, float ball_radius, Visit&& visit) const {
-    if (chunks.empty()) return;
+void CoverCells::for_each_range_near(const Vec3f& ball_centre, float ball_radius, const Vec3f& normal,
+                                     Visit&& visit) const {
     const float limit = ball_radius * ball_radius;
-    const auto near = [&](const Box& box) {
-        const Vec3f d = (box.low - ball_centre).cwiseMax(ball_centre - box.high).cwiseMax(0.0f);
-        return d.squaredNorm() <= limit;
-    };
-    const auto descend = [&](auto&& self, std::size_t level, std::size_t node) -> void {
-        if (!near(levels_[level][node])) return;
-        if (level == 0) {
-            visit(chunks[node]);
+    const auto visit_group = [&](const Group& group) {
+        // Cosines of the smallest and of the largest angle between `normal` and the cone.
+        const float cosine = group.axis.dot(normal), sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+        const float farthest = cosine * group.cosine - sine * group.sine;
+        if (cosine + group.cosine > 0 && farthest >= kLeastAgreement + 1e-5f) {
+            visit(group.first_cell, group.end_cell);
             return;
         }
-        const std::size_t end = std::min((node + 1) * kBranching, levels_[level - 1].size());
-        for (std::size_t child = node * kBranching; child < end; ++child)
-            self(self, level - 1, child);
+        for (auto c = group.first_chunk; c < group.end_chunk; ++c) {
+            if (chunks[c].normal.dot(normal) >= kLeastAgreement)
+                visit(chunks[c].first, chunks[c].first + chunks[c].count);
+        }
     };
-    descend(descend, levels_.size() - 1, 0);
+    const auto descend = [&](auto&& self, std::size_t level, std::size_t index) -> void {
+        const Node& node = levels_[level][index];
+        float distance2[kBranching] = {};
+        for (int axis = 0; axis < 3; ++axis) {
+            const float c = ball_centre[axis];
+            for (std::size_t k = 0; k < kBranching; ++k) {
+                const float d = std::max(std::max(node.low[axis][k] - c, c - node.high[axis][k]), 0.0f);
+                distance2[k] += d * d;
+            }
+        }
+        for (std::size_t k = 0; k < kBranching; ++k) {
+            if (!(distance2[k] <= limit)) continue;
+            if (level == 0) {
+                visit_group(groups_[index * kBranching + k]);
+            } else {
+                self(self, level - 1, index * kBranching + k);
+            }
+        }
+    };
+    if (!levels_.empty()) descend(descend, levels_.size() - 1, 0);
 }
 
 template <typename Visit>

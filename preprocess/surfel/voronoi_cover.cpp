@@ -14,20 +14,40 @@ namespace {
 
 constexpr float kDartDistance = 0.75f;   // of the spacing; jams at 0.81 spacings^2 a site, a hexagonal grid has 0.87
 constexpr float kClaimDistance = 1.1f;   // of the spacing: no site owns cells whose centres are farther
+constexpr float kRelaxDistance = 0.9f;   // the same while sites still move; the few cells beyond do not matter
 constexpr float kRoundingSlack = 1e-6f;  // unit-box units; see cover_cells.cpp
 
-// Calls visit(cell, squared distance) for the cells within `reach` of a site that its disk may cover.
+// What decides whether a site's disk may cover a cell, apart from their normals. The loops over cells that use it are
+// written without branches, so that they compile to vector instructions.
+struct Reach {
+    float x, y, z, nx, ny, nz, limit2, off_plane;
+
+    Reach(const CoverSite& site, float distance)
+        : x(site.position.x()),
+          y(site.position.y()),
+          z(site.position.z()),
+          nx(site.normal.x()),
+          ny(site.normal.y()),
+          nz(site.normal.z()),
+          limit2(distance * distance),
+          off_plane(kMostOffPlane * site.spacing) {}
+
+    bool covers(float px, float py, float pz, float& distance2) const {
+        const float dx = px - x, dy = py - y, dz = pz - z;
+        const float plane = dx * nx + dy * ny + dz * nz;
+        distance2 = dx * dx + dy * dy + dz * dz;
+        return (distance2 <= limit2) & (std::abs(plane) <= off_plane);
+    }
+};
+
+// Calls visit(cell, squared distance) for the cells whose centre is within `distance` of a site that may cover them.
 template <typename Visit>
-void for_each_coverable(const CoverCells& cells, const CoverSite& site, float reach, Visit&& visit) {
-    const float limit = reach * reach, off_plane = kMostOffPlane * site.spacing;
-    const Vec3f p = site.position, n = site.normal;
-    cells.for_each_chunk_near(p, reach, [&](const CellChunk& chunk) {
-        if (chunk.normal.dot(n) < kLeastAgreement) return;
-        for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
-            const float dx = cells.x[i] - p.x(), dy = cells.y[i] - p.y(), dz = cells.z[i] - p.z();
-            const float plane = dx * n.x() + dy * n.y() + dz * n.z();
-            const float distance2 = dx * dx + dy * dy + dz * dz;
-            if (distance2 <= limit && std::abs(plane) <= off_plane) visit(i, distance2);
+void for_each_coverable(const CoverCells& cells, const CoverSite& site, float distance, Visit&& visit) {
+    const Reach reach(site, distance);
+    cells.for_each_range_near(site.position, distance, site.normal, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t i = first; i < end; ++i) {
+            float distance2 = 0;
+            if (reach.covers(cells.x[i], cells.y[i], cells.z[i], distance2)) visit(i, distance2);
         }
     });
 }
@@ -38,6 +58,20 @@ CoverSite site_at(const IndexedMesh& mesh, const CellChunk& chunk, const Vec3f& 
             chunk.spacing, chunk.triangle, 0};
 }
 
+// The cells of a range that a site may cover and that are nearer to it than to their owners change hands.
+void claim_range(const Reach reach, const float scale, const std::uint32_t index, const std::uint32_t count,
+                 const float* __restrict x, const float* __restrict y, const float* __restrict z,
+                 float* __restrict nearest, std::uint32_t* __restrict owner) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        float squared = 0;
+        const bool covers = reach.covers(x[i], y[i], z[i], squared);
+        const float scaled = squared * scale, before = nearest[i];
+        const bool takes = covers & (scaled < before);
+        nearest[i] = takes ? scaled : before;
+        owner[i] = takes ? index : owner[i];
+    }
+}
+
 // The Voronoi diagram of the sites over the cells, distances in units of each site's spacing.
 struct Diagram {
     std::vector<std::uint32_t> owner;
@@ -45,21 +79,21 @@ struct Diagram {
 
     explicit Diagram(std::size_t cells) : owner(cells, kNoSite), distance2(cells, std::numeric_limits<float>::max()) {}
 
-    void claim(const CoverCells& cells, const CoverSite& site, std::uint32_t index) {
+    void claim(const CoverCells& cells, const CoverSite& site, std::uint32_t index, float distance) {
+        const Reach reach(site, distance * site.spacing);
         const float scale = 1 / (site.spacing * site.spacing);
-        for_each_coverable(cells, site, kClaimDistance * site.spacing, [&](std::uint32_t cell, float squared) {
-            if (squared * scale < distance2[cell]) {
-                distance2[cell] = squared * scale;
-                owner[cell] = index;
-            }
-        });
+        cells.for_each_range_near(site.position, distance * site.spacing, site.normal,
+                                  [&](std::uint32_t first, std::uint32_t end) {
+                                      claim_range(reach, scale, index, end - first, &cells.x[first], &cells.y[first],
+                                                  &cells.z[first], &distance2[first], &owner[first]);
+                                  });
     }
 };
 
-Diagram diagram_of(const CoverCells& cells, const std::vector<CoverSite>& sites) {
+Diagram diagram_of(const CoverCells& cells, const std::vector<CoverSite>& sites, float distance) {
     Diagram diagram(cells.size());
     for (std::uint32_t i = 0; i < sites.size(); ++i)
-        diagram.claim(cells, sites[i], i);
+        diagram.claim(cells, sites[i], i, distance);
     return diagram;
 }
 
@@ -85,7 +119,7 @@ std::vector<CoverSite> throw_darts(const IndexedMesh& mesh, const CoverCells& ce
 
 void relax_sites(const IndexedMesh& mesh, const CoverCells& cells, std::vector<CoverSite>& sites, int iterations) {
     for (int iteration = 0; iteration < iterations; ++iteration) {
-        const Diagram diagram = diagram_of(cells, sites);
+        const Diagram diagram = diagram_of(cells, sites, kRelaxDistance);
         std::vector<Vec3f> middle(sites.size(), Vec3f::Zero());
         std::vector<float> weight(sites.size(), 0.0f);
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -155,12 +189,12 @@ void prune_sites(const CoverCells& cells, std::vector<CoverSite>& sites, float r
 
 std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells& cells, std::vector<CoverSite>& sites,
                                        float overlap) {
-    Diagram diagram = diagram_of(cells, sites);
+    Diagram diagram = diagram_of(cells, sites, kClaimDistance);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (diagram.owner[i] != kNoSite) continue;
         sites.push_back(site_at(mesh, cells.chunks[cells.chunk_of[i]], cells.centre(i)));
         const auto index = static_cast<std::uint32_t>(sites.size() - 1);
-        diagram.claim(cells, sites.back(), index);
+        diagram.claim(cells, sites.back(), index, kClaimDistance);
         diagram.owner[i] = index;
     }
     std::vector<float> area(sites.size(), 0.0f);

@@ -19,9 +19,8 @@ struct CoverSite {
 
 inline constexpr std::uint32_t kNoSite = 0xffffffffu;
 
-/// A disk may cover a cell only if the normals differ by at most 60 degrees and the cell's centre is at most this share
-/// of the site's spacing off the disk's plane.
-inline constexpr float kLeastAgreement = 0.5f;
+/// A disk may cover a cell only if their normals agree (kLeastAgreement) and the cell's centre is at most this share of
+/// the site's spacing off the disk's plane.
 inline constexpr float kMostOffPlane = 0.25f;
 
 /// Dart throwing on the cells' centres: no two sites of like normal nearer than 3/4 of the spacing, no room for

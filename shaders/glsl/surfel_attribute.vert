@@ -1,5 +1,5 @@
 // Attribute pass: every surfel's lit colour, weighted by the EWA resampling filter (thesis 3.4.2). Lit once a surfel, to
-// first order: the colour at the centre and how it changes along both tangents, as the normal turns across the disk.
+// first order: the colour at the centre and how it changes along both tangents, as the shading normal turns.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -9,14 +9,13 @@
 #include "splat.glsl"
 #include "surfel_vertex.glsl"
 
-layout(location = 0) flat out vec2 out_anchor;
+layout(location = 0) flat out vec4 out_anchor_g;
 layout(location = 1) flat out vec4 out_plane_map;
-layout(location = 2) flat out vec4 out_plane;
-layout(location = 3) flat out vec4 out_offset_interval;
-layout(location = 4) flat out vec4 out_conic_weight;
-layout(location = 5) flat out vec3 out_colour;
-layout(location = 6) flat out vec3 out_colour_u;  // change a radius
-layout(location = 7) flat out vec3 out_colour_v;
+layout(location = 2) flat out vec4 out_conic_weight;
+layout(location = 3) flat out vec4 out_colour_depth;
+layout(location = 4) flat out vec3 out_rise_offset;
+layout(location = 5) flat out vec3 out_colour_u;  // change a radius
+layout(location = 6) flat out vec3 out_colour_v;
 
 // format::kLargestBend
 const vec2 LARGEST_LEAN = vec2(1);
@@ -37,13 +36,13 @@ void main() {
     SurfelFrame surfel;
     const bool drawn = surfel_splat(splat, surfel);
     place_primitive(drawn, splat.anchor, splat.splat_bounds);
-    out_anchor = splat.anchor;
-    out_plane_map = splat.plane_map;
-    out_plane = splat.plane;
-    out_offset_interval = vec4(splat.plane_offset, splat.interval);
-    out_conic_weight = vec4(splat.conic, splat.weight);
     const float side = dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1;
-    out_colour = colour_at(surfel, side, vec2(0));
+    const vec3 colour = colour_at(surfel, side, vec2(0));
     out_colour_u = 0.5 * (colour_at(surfel, side, vec2(1, 0)) - colour_at(surfel, side, vec2(-1, 0)));
     out_colour_v = 0.5 * (colour_at(surfel, side, vec2(0, 1)) - colour_at(surfel, side, vec2(0, -1)));
+    out_anchor_g = vec4(splat.anchor, splat.g);
+    out_plane_map = splat.plane_map;
+    out_conic_weight = vec4(splat.conic, splat.weight);
+    out_colour_depth = vec4(colour, splat.anchor_depth);
+    out_rise_offset = vec3(splat.rise, splat.plane_offset);
 }

@@ -19,19 +19,19 @@ void main() {
     const vec4 triangles = subpassLoad(triangle_colour);
     const vec4 sum = subpassLoad(accumulation);
     if (!SURFELS && triangles.a == 0) discard;
-    if (frame.view == VIEW_VISIBILITY) {
+    if (VIEW == VIEW_VISIBILITY) {
         const float eye_depth = decode_depth(subpassLoad(depth).r);
         out_colour = vec4(SURFELS ? -eye_depth : eye_depth, 0, 0, 1);
         return;
     }
-    if (frame.view == VIEW_OVERLAP) {
+    if (VIEW == VIEW_OVERLAP) {
         out_colour = vec4(SURFELS ? sum.a : 0, 0, 0, 1);
         return;
     }
     const vec3 linear = SURFELS ? sum.rgb / sum.a : triangles.rgb;
-    if (frame.view == VIEW_DEPTH || frame.view == VIEW_NORMALS) {
+    if (VIEW == VIEW_DEPTH || VIEW == VIEW_NORMALS) {
         out_colour = vec4(linear, 1);
-    } else if (frame.view == VIEW_ACCUMULATION) {
+    } else if (VIEW == VIEW_ACCUMULATION) {
         // Half scale: two fully weighted splats reach white's level.
         out_colour = vec4(encode_srgb(SURFELS ? 0.5 * sum.rgb : vec3(0)), 1);
     } else {

@@ -3,16 +3,14 @@
 #include "frame.glsl"
 #include "splat.glsl"
 
-layout(location = 0) flat in vec2 in_anchor;
+layout(location = 0) flat in vec4 in_anchor_g;
 layout(location = 1) flat in vec4 in_plane_map;
-layout(location = 2) flat in vec4 in_plane;
-layout(location = 3) flat in vec4 in_offset_interval;
-layout(location = 4) flat in float in_epsilon;
+layout(location = 2) flat in vec4 in_depth_epsilon_offset;
 
 void main() {
     const vec2 pixel = gl_FragCoord.xy;
-    const SplatHit hit =
-        cast_ray(pixel, in_anchor, in_plane_map, in_plane, in_offset_interval.xy, in_offset_interval.zw);
+    const SplatHit hit = cast_ray(pixel, in_anchor_g.xy, in_plane_map, in_anchor_g.zw, in_depth_epsilon_offset.x,
+                                  in_depth_epsilon_offset.zw);
     if (!hit.on_disk) discard;
-    gl_FragDepth = encode_depth(push_back(hit.depth, in_epsilon, pixel));
+    gl_FragDepth = encode_depth(push_back(hit.depth, in_depth_epsilon_offset.y, pixel));
 }

@@ -22,7 +22,7 @@ void main() {
         out_colour = vec4(0.01, 0.02, 0.05, 1);
         return;
     }
-    if (frame.view == VIEW_DEPTH) {
+    if (VIEW == VIEW_DEPTH) {
         out_colour = vec4(vec3(-in_position.z), 1);
         return;
     }

@@ -3,7 +3,11 @@
 #ifndef SPLICE_FRAME_GLSL
 #define SPLICE_FRAME_GLSL
 
-// engine/passes/view.h
+// What never changes within a frame and is worth a pipeline of its own: no fragment branches on it.
+layout(constant_id = 1) const uint VIEW = 0;  // VIEW_*
+layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
+
+// engine/scene/view.h
 const uint VIEW_SHADED = 0;
 const uint VIEW_DEPTH = 1;
 const uint VIEW_VISIBILITY = 2;
@@ -21,15 +25,13 @@ layout(set = 0, binding = 0, std140) uniform FrameUniforms {
     float pixel_scale;     // window pixels per unit at depth 1 (perspective) or anywhere (orthographic)
     float near_plane;      // depth, world units
     float far_plane;       // orthographic only
-    uint orthographic;     // 0 or 1
-    uint view;             // VIEW_*
     uint prefilter;        // 0 or 1
+    float sample_share;    // VIEW_SAMPLES: share of the surfels that is drawn
+    float sample_radius;   // VIEW_SAMPLES: factor on their radii
     vec3 ambient;          // linear
     uint light_count;
     float specular;
     float shininess;
-    float sample_share;    // VIEW_SAMPLES: share of the surfels that is drawn
-    float sample_radius;   // VIEW_SAMPLES: factor on their radii
 } frame;
 
 struct LightRecord {
@@ -61,16 +63,16 @@ vec3 normal_to_view_space(vec3 normal) {
 }
 
 // From a point of view space towards the eye, not normalised.
-vec3 towards_eye(vec3 position) { return frame.orthographic != 0 ? vec3(0, 0, 1) : -position; }
+vec3 towards_eye(vec3 position) { return ORTHOGRAPHIC ? vec3(0, 0, 1) : -position; }
 
 // Depth buffer value of a depth (distance along the view axis); nearer is greater.
 float encode_depth(float depth) {
-    return frame.orthographic != 0 ? (frame.far_plane - depth) / (frame.far_plane - frame.near_plane)
+    return ORTHOGRAPHIC ? (frame.far_plane - depth) / (frame.far_plane - frame.near_plane)
                                    : frame.near_plane / depth;
 }
 
 float decode_depth(float value) {
-    return frame.orthographic != 0 ? frame.far_plane - value * (frame.far_plane - frame.near_plane)
+    return ORTHOGRAPHIC ? frame.far_plane - value * (frame.far_plane - frame.near_plane)
                                    : frame.near_plane / value;
 }
 

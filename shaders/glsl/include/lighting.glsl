@@ -35,7 +35,7 @@ vec3 face_the_eye(vec3 normal, vec3 position) {
 
 // What the views show instead of `albedo`; `patch_number` and `is_surfel` say where the point belongs.
 vec3 view_colour(vec3 albedo, vec3 normal, vec3 position, uint patch_number, bool is_surfel) {
-    switch (frame.view) {
+    switch (VIEW) {
         case VIEW_NORMALS: return normal * 0.5 + 0.5;
         case VIEW_PATCHES: return shade(label_colour(patch_number + instance.first_patch), normal, position);
         case VIEW_REPRESENTATION:

@@ -15,9 +15,10 @@
 struct Splat {
     vec2 anchor;        // window position of P
     vec4 plane_map;     // A, column by column
-    vec4 plane;         // g, t_P, and 1 if the disk may fall between pixel centres, else 0
+    vec2 g;
+    float anchor_depth; // t_P
     vec2 plane_offset;  // a
-    vec2 interval;      // nearest and farthest depth of the disk
+    float rise;         // the disk's depths are within this of t_P
     float epsilon;      // by how much the visibility pass moves depth away, along the ray, world units
     vec3 conic;         // V^-1: xx, xy, yy; V the resampling covariance, thesis 3.22
     float weight;       // of the splat's centre, in (0, 1]
@@ -34,9 +35,10 @@ const float MAX_STRETCH = 3.0;
 // Edge-on planes are hit nowhere; keeps the divisions finite.
 const float MIN_COSINE = 1e-6;
 const float MIN_WEIGHT = 1.0 / 4096.0;
-const float NOWHERE = 1e18;
+// Variance of the prefilter, pixels^2. The thesis's 1 (3.22) blurs more than a pixel's box (variance 1/12) does: 0.3 is
+// the least that lets every splat reach a pixel centre, its footprint ending at sqrt(2 * 0.3) > sqrt(2) / 2 pixels.
 const float PREFILTER = 0.3;
-const float LARGEST_SUBPIXEL = 1.5;  // pixels; a disk less wide than sqrt(2) may miss all pixel centres
+const float NOWHERE = 1e18;
 
 // preprocess/model_format/tangent_frame.h computes the same.
 void tangents_of(vec3 n, out vec3 s, out vec3 t) {
@@ -49,7 +51,7 @@ void tangents_of(vec3 n, out vec3 s, out vec3 t) {
 }
 
 vec2 project_to_window(vec3 p) {
-    const vec2 q = frame.orthographic != 0 ? p.xy : p.xy / -p.z;
+    const vec2 q = ORTHOGRAPHIC ? p.xy : p.xy / -p.z;
     return frame.viewport * 0.5 + frame.pixel_scale * vec2(q.x, -q.y);
 }
 
@@ -64,33 +66,33 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
     return vec2(qb - root, qb + root) / qa;
 }
 
-// `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing of it can be seen.
+// `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing
+// of it can be seen.
 bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float epsilon, out Splat splat) {
-    const bool orthographic = frame.orthographic != 0;
     const float depth = -centre.z;
     const vec2 slope = vec2(-s.z, -t.z);  // change of depth along the tangents
     const float steepness = length(slope);
-    splat.interval = vec2(depth - radius * steepness, depth + radius * steepness);
-    if (splat.interval.y <= frame.near_plane) return false;
-    const bool crosses_near = splat.interval.x < frame.near_plane;
+    splat.rise = radius * steepness;
+    if (depth + splat.rise <= frame.near_plane) return false;
+    const bool crosses_near = depth - splat.rise < frame.near_plane;
 
     vec3 p = centre;
     splat.plane_offset = vec2(0);
     if (crosses_near) {
-        splat.plane_offset = steepness > 0 ? slope / steepness : vec2(1, 0);
+        splat.plane_offset = slope / steepness;  // it rises, or it would not cross
         p += radius * (splat.plane_offset.x * s + splat.plane_offset.y * t);
+        splat.rise *= 2;
     }
-    const float anchor_depth = -p.z;
-    const vec3 ray = orthographic ? vec3(0, 0, -1) : vec3(p.xy / anchor_depth, -1);
+    splat.anchor_depth = -p.z;
+    const vec3 ray = ORTHOGRAPHIC ? vec3(0, 0, -1) : vec3(p.xy / splat.anchor_depth, -1);
     float facing = dot(normal, ray);
     if (abs(facing) < MIN_COSINE) facing = facing < 0 ? -MIN_COSINE : MIN_COSINE;
     const vec3 dx = vec3(1 / frame.pixel_scale, 0, 0), dy = vec3(0, -1 / frame.pixel_scale, 0);
-    const vec2 g = vec2(dot(normal, dx), dot(normal, dy)) / facing;
-    const float reach = (orthographic ? 1 : anchor_depth) / radius;
-    const vec3 along_x = (dx - g.x * ray) * reach, along_y = (dy - g.y * ray) * reach;
+    splat.g = vec2(dot(normal, dx), dot(normal, dy)) / facing;
+    const float reach = (ORTHOGRAPHIC ? 1 : splat.anchor_depth) / radius;
+    const vec3 along_x = (dx - splat.g.x * ray) * reach, along_y = (dy - splat.g.y * ray) * reach;
     splat.anchor = project_to_window(p);
     splat.plane_map = vec4(dot(s, along_x), dot(t, along_x), dot(s, along_y), dot(t, along_y));
-    splat.plane = vec4(g, anchor_depth, 0);
     splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
 
     if (crosses_near) {
@@ -104,7 +106,7 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ep
     // Rows of J times the radius: how the window position changes along the tangents.
     const float eta = frame.pixel_scale * radius;
     vec2 jx, jy;
-    if (orthographic) {
+    if (ORTHOGRAPHIC) {
         jx = eta * vec2(s.x, t.x);
         jy = -eta * vec2(s.y, t.y);
         const vec2 extent = vec2(length(jx), length(jy));
@@ -116,10 +118,6 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ep
         const vec2 y = projected_extremes(-centre.y, -s.y, -t.y, depth, slope.x, slope.y, radius);
         splat.disk_bounds = frame.viewport.xyxy * 0.5 + frame.pixel_scale * vec4(x.x, y.x, x.y, y.y);
     }
-    // A disk smaller than a pixel shows at the pixel that holds its centre. A larger one that is merely thin, because it
-    // is seen edge-on, must not: it would grow the outline.
-    const vec2 disk_extent = splat.disk_bounds.zw - splat.disk_bounds.xy;
-    splat.plane.w = max(disk_extent.x, disk_extent.y) < LARGEST_SUBPIXEL ? 1 : 0;
     if (frame.prefilter == 0) {
         splat.conic = vec3(NOWHERE, 0, NOWHERE);
         splat.weight = 1;
@@ -140,35 +138,29 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ep
 }
 
 struct SplatHit {
-    bool on_disk;     // the ray meets the disk, or the pixel holds the centre of a disk that it misses
-    float depth;      // of the surface there, on the disk's plane clamped to the disk's interval
-    float distance2;  // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
-    vec2 uv;          // where the ray meets the plane, in radii
+    bool on_disk;      // the ray meets the disk
+    float depth;       // of the plane there
+    float distance2;   // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
+    vec2 uv;           // where the ray meets the plane, in radii
 };
 
-SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec4 plane, vec2 plane_offset, vec2 interval) {
+SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset) {
     const vec2 d = pixel - anchor;
-    const float gd = dot(plane.xy, d);
-    const float e = frame.orthographic != 0 ? 1 : 1 + gd;
+    const float gd = dot(g, d);
+    const float e = ORTHOGRAPHIC ? 1 : 1 + gd;
     const vec2 uv = plane_map.xy * d.x + plane_map.zw * d.y + plane_offset * e;
     const float distance2 = dot(uv, uv);
-    const float plane_depth = frame.orthographic != 0 ? plane.z - gd : (e > 0 ? plane.z / e : interval.y);
     SplatHit hit;
-    hit.depth = clamp(plane_depth, interval.x, interval.y);
+    hit.depth = ORTHOGRAPHIC ? anchor_depth - gd : (e > 0 ? anchor_depth / e : NOWHERE);
     hit.uv = e > 0 ? uv / e : vec2(0);
-    hit.on_disk = e > 0 && distance2 <= e * e && plane_depth >= frame.near_plane;
+    hit.on_disk = e > 0 && distance2 <= e * e && hit.depth >= frame.near_plane;
     hit.distance2 = hit.on_disk ? distance2 / (e * e) : NOWHERE;
-    // A disk may lie between pixel centres; then it shows at the pixel that holds its centre.
-    if (!hit.on_disk && plane.w != 0 && dot(d, d) < 1e-09) {
-        hit.on_disk = true;
-        hit.depth = plane.z;
-    }
     return hit;
 }
 
 // Depth moved away from the eye along the pixel's ray by `epsilon`.
 float push_back(float depth, float epsilon, vec2 pixel) {
-    if (frame.orthographic != 0) return depth + epsilon;
+    if (ORTHOGRAPHIC) return depth + epsilon;
     return depth + epsilon * inversesqrt(1 + dot(pixel - frame.viewport * 0.5, pixel - frame.viewport * 0.5) /
                                                  (frame.pixel_scale * frame.pixel_scale));
 }

@@ -43,7 +43,7 @@ bool surfel_splat(out Splat splat, out SurfelFrame surfel) {
     const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
     if (!two_sided && dot(normal, towards_eye(centre)) <= 0) return false;
     float radius = in_radius_epsilon.x * instance.scale;
-    if (frame.view == VIEW_SAMPLES) {
+    if (VIEW == VIEW_SAMPLES) {
         if (!in_sample(in_position)) return false;
         radius *= frame.sample_radius;
     }

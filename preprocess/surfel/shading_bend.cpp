@@ -38,9 +38,8 @@ std::vector<ShadingBend> fit_shading_bends(const IndexedMesh& mesh, const CoverC
         // Both tangential components against (1, u, v), u and v in radii.
         Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
         Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-        cells.for_each_chunk_near(p, radius, [&](const CellChunk& chunk) {
-            if (chunk.normal.dot(n) < kLeastAgreement) return;
-            for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
+        cells.for_each_range_near(p, radius, n, [&](std::uint32_t first, std::uint32_t end) {
+            for (std::uint32_t i = first; i < end; ++i) {
                 const Vec3f d = cells.centre(i) - p;
                 const float cosine = normals[i].dot(n);
                 if (d.squaredNorm() > limit || cosine < kLeastAgreement) continue;

@@ -17,6 +17,8 @@ std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& n) {
     return {s, glm::cross(n, s)};
 }
 
+constexpr double kPrefilter = 0.3;  // variance, pixels^2; splat.glsl
+
 }  // namespace
 
 SplatOracle::SplatOracle(const Disk& disk, const Camera& camera, std::uint32_t width, std::uint32_t height,
@@ -42,7 +44,7 @@ SplatOracle::SplatOracle(const Disk& disk, const Camera& camera, std::uint32_t w
     const glm::dvec2 along_t = (window(centre_ + h * t) - window(centre_ - h * t)) / (2 * h);
     const glm::dmat2 jacobian(along_s, along_t);
     const glm::dmat2 reconstruction = jacobian * glm::transpose(jacobian) * (radius_ * radius_ / 2);
-    const glm::dmat2 resampling = reconstruction + glm::dmat2(1.0);
+    const glm::dmat2 resampling = reconstruction + glm::dmat2(kPrefilter);
     covariance_inverse_ = glm::inverse(resampling);
     peak_ = std::sqrt(std::max(glm::determinant(reconstruction), 0.0) / glm::determinant(resampling));
 }
@@ -79,17 +81,13 @@ SplatPixel SplatOracle::at(std::uint32_t x, std::uint32_t y) const {
         result.weight = result.on_disk ? std::exp(-exponent) : 0;
         return result;
     }
-    result.holds_centre = glm::floor(pixel) == glm::floor(centre_px_);
-    const glm::dvec2 from_edge = glm::abs(centre_px_ - glm::round(centre_px_));
-    if (result.holds_centre) result.certainty = std::min(from_edge.x, from_edge.y);
-    if (result.holds_centre && !result.on_disk) result.depth = -centre_.z;
     if (prefilter_) {
         const glm::dvec2 d = pixel - centre_px_;
         const double ewa = glm::dot(d, covariance_inverse_ * d) / 2;
         result.certainty = std::min(result.certainty, std::abs(ewa - 1));
         exponent = std::min(exponent, ewa);
     }
-    const bool shown = result.on_disk || result.holds_centre || exponent < 1;
+    const bool shown = result.on_disk || exponent < 1;
     result.weight = shown ? (prefilter_ ? std::max(peak_, 1.0 / 4096) : 1) * std::exp(-std::min(exponent, 1.0)) : 0;
     return result;
 }

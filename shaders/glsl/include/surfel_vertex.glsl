@@ -31,7 +31,7 @@ bool surfel_splat(out Splat splat, out vec3 centre, out vec3 normal) {
     centre = to_view_space(in_position);
     normal = normal_to_view_space(decode_octahedral(in_normal));
     const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
-    if (!two_sided && dot(normal, towards_eye(centre)) <= 0) return false;
+    if (!two_sided && beyond_horizon(normal, centre)) return false;
     float radius = in_radius * instance.scale;
     if (VIEW == VIEW_SAMPLES) {
         if (!in_sample(in_position)) return false;

@@ -13,6 +13,10 @@ namespace {
 
 enum class Containment { kOutside, kPartly, kInside };
 
+// Cosine of the viewing angle beyond which shaders drop a back-facing surfel: HORIZON of frame.glsl, negated for the
+// angle between its normal and the direction away from the eye.
+constexpr double kHorizon = 0.25;
+
 // Pixels by which a splat may exceed its disk: the prefilter's sqrt(2), and rounding.
 constexpr double kPrefilterReach = 1.5;
 
@@ -72,8 +76,9 @@ class Culler {
         return {std::all_of(inside.begin(), inside.end(), all) ? Containment::kInside : Containment::kPartly, nearest};
     }
 
-    // True if every normal in the patch's cone faces away from the eye, wherever in the patch it sits (Pajarola et
-    // al. 2004, section 6.2, with the extent of the patch taken into account: beta + theta + alpha < 90 degrees).
+    // True if every normal in the patch's cone is beyond the horizon from the eye, wherever in the patch it sits
+    // (Pajarola et al. 2004, section 6.2, with the extent of the patch taken into account: beta + theta + alpha < 90
+    // degrees, here less what shaders draw beyond the horizon).
     bool faces_away(const format::Patch& patch) const {
         if (patch.cone_cos <= 0) return false;
         const glm::dvec3 axis = glm::normalize(glm::dmat3(draws_.model_to_view) * vector_of(patch.cone_axis));
@@ -91,7 +96,7 @@ class Culler {
         }
         const double beta = std::acos(std::clamp(glm::dot(axis, away), -1.0, 1.0));
         constexpr double kRounding = 1e-3;  // radians; normals are quantised
-        return beta + spread + alpha + kRounding < glm::radians(90.0);
+        return beta + spread + alpha + kRounding < std::acos(kHorizon);
     }
 
     void visit_node(std::uint32_t index) {

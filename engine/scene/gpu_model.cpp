@@ -67,8 +67,8 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
     // A vertex buffer, because a storage binding is limited to 128 MiB on lavapipe. The padding is for synchronisation
     // validation (1.3.239), which takes the four vertices of an instance for four records of the instance's buffer.
-    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.surfels),
-                      3 * sizeof(format::Surfel));
+    surfels_ =
+        buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.surfels), 3 * sizeof(format::Surfel));
     create_materials(device, model);
 }
 

@@ -14,7 +14,6 @@ namespace splice::test {
 
 struct SplatPixel {
     bool on_disk = false;       // the ray of the pixel's centre meets the disk in front of the near plane
-    bool holds_centre = false;  // the disk's centre projects into the pixel
     double depth = 0;           // where the ray meets the disk, or of the centre
     double weight = 0;          // EWA; 0 beyond the cut
     double certainty = 0;       // how far, relatively, the decisions above are from turning

@@ -65,6 +65,15 @@ vec3 normal_to_view_space(vec3 normal) {
 // From a point of view space towards the eye, not normalised.
 vec3 towards_eye(vec3 position) { return ORTHOGRAPHIC ? vec3(0, 0, 1) : -position; }
 
+// Surfels are disks, and their normals are interpolated: a little beyond the horizon, by this cosine, a disk that is
+// seen from behind still belongs to the rim of a surface that is seen from the front. engine/scene/draw_list.cpp culls
+// patches with the same number.
+const float HORIZON = -0.25;
+
+bool beyond_horizon(vec3 normal, vec3 position) {
+    return dot(normal, normalize(towards_eye(position))) < HORIZON;
+}
+
 // Depth buffer value of a depth (distance along the view axis); nearer is greater.
 float encode_depth(float depth) {
     return ORTHOGRAPHIC ? (frame.far_plane - depth) / (frame.far_plane - frame.near_plane)

@@ -22,14 +22,10 @@ vec3 shade(vec3 albedo, vec3 normal, vec3 position) {
     return albedo * diffuse + frame.specular * highlight;
 }
 
-// A little beyond the horizon, a surface that is seen from behind is the rim of the one that bends away there and is
-// lit with it; turned to the eye, it would be a speck on the silhouette.
-const float HORIZON = -0.25;  // cosine
-
-// Two-sided surfaces show the side that is looked at.
+// Two-sided surfaces show the side that is looked at. What is seen from behind before the horizon is lit as what it
+// borders on; turned to the eye, it would be a speck on the silhouette.
 vec3 face_the_eye(vec3 normal, vec3 position) {
-    const bool turned = (instance.flags & INSTANCE_TWO_SIDED) != 0 &&
-                        dot(normal, normalize(towards_eye(position))) < HORIZON;
+    const bool turned = (instance.flags & INSTANCE_TWO_SIDED) != 0 && beyond_horizon(normal, position);
     return turned ? -normal : normal;
 }
 

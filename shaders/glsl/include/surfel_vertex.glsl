@@ -41,7 +41,7 @@ bool surfel_splat(out Splat splat, out SurfelFrame surfel) {
     surfel.s = normal_to_view_space(surfel.s);
     surfel.t = normal_to_view_space(surfel.t);
     const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
-    if (!two_sided && dot(normal, towards_eye(centre)) <= 0) return false;
+    if (!two_sided && beyond_horizon(normal, centre)) return false;
     float radius = in_radius_epsilon.x * instance.scale;
     if (VIEW == VIEW_SAMPLES) {
         if (!in_sample(in_position)) return false;

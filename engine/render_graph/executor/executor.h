@@ -95,8 +95,7 @@ class Executor {
     /// The plan of the last execution.
     const Plan& plan() const;
     /// Times of the passes of the slot's last execution, in recorded order, once it has finished; empty without
-    /// timestamps. Software rasterisers do the work of a render pass where it ends, so there its subpasses share
-    /// unevenly.
+    /// timestamps. Where a device works tile by tile, subpasses of one render pass overlap: only their sum is exact.
     std::vector<PassTiming> timings(uint32_t frame_slot = 0) const;
     const ExecutorStatistics& statistics() const;
 

@@ -31,6 +31,11 @@ class ClusterGraph {
     }
     /// The length of the border between two neighbours.
     float border(std::uint32_t a, std::uint32_t b) const;
+    /// Starts loading what merging into or beside `slot` will touch.
+    void prefetch(std::uint32_t slot) const {
+        __builtin_prefetch(&slots_[slot], 1);
+        __builtin_prefetch(&arena_[slot * kQuad], 1);  // where its list began, and mostly still is
+    }
     /// Counts the merges that touched the slot; what was computed for another version is stale.
     std::uint32_t version(std::uint32_t slot) const { return slots_[slot].version; }
     /// The node of the merge tree that stands for the cluster.
@@ -44,7 +49,7 @@ class ClusterGraph {
   private:
     // Lists are blocks of 4 * 2^size_class links in one arena; freed blocks are kept by size.
     static constexpr std::size_t kQuad = 4;
-    struct Slot {
+    struct alignas(32) Slot {
         std::uint32_t block;  // in units of kQuad links
         std::uint32_t size;
         std::uint32_t size_class;

@@ -63,7 +63,7 @@ void check(const ClusterOptions& options) {
 
 /// The options, with every default resolved for this mesh.
 struct Settings {
-    bool thesis, hybrid;
+    bool thesis, hybrid, all_triangles, all_surfels;
     std::optional<double> share;
     float phase1_cost, phase2_cost;
     float max_area;  // unit-box units^2
@@ -100,6 +100,8 @@ Settings resolve(const ClusterOptions& options, const FaceGraph& faces) {
     Settings settings{};
     settings.thesis = options.selection == Selection::kThesis;
     settings.hybrid = options.representation == ForcedRepresentation::kHybrid;
+    settings.all_triangles = options.representation == ForcedRepresentation::kTriangles;
+    settings.all_surfels = options.representation == ForcedRepresentation::kSurfels;
     if (settings.hybrid) settings.share = options.triangle_share;
     settings.phase1_cost =
         static_cast<float>(options.phase1_cost.value_or(settings.thesis ? kThesisPhase1Cost : kNever));
@@ -113,10 +115,42 @@ Settings resolve(const ClusterOptions& options, const FaceGraph& faces) {
     return settings;
 }
 
+/// What phase one starts from.
+struct Surface {
+    FaceGraph faces;
+    Settings settings;
+    std::vector<float> scores;  // by slot; empty if not scored
+    float threshold = kRoughScore;
+};
+
+Surface measure_surface(const IndexedMesh& mesh, const ClusterOptions& options) {
+    Surface surface;
+    FaceRoughness roughness;
+    FaceAdjacency adjacency;
+    tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh); },
+                         [&] {
+                             surface.faces = order_faces(mesh);
+                             surface.settings = resolve(options, surface.faces);
+                             if (surface.settings.scored()) roughness = measure_roughness(mesh, surface.faces);
+                         });
+    surface.faces.links = link_faces(mesh, surface.faces, adjacency);
+    if (surface.settings.scored()) surface.scores = score_faces(surface.faces, roughness);
+    if (surface.settings.share) surface.threshold = score_at_share(surface.scores, *surface.settings.share);
+    return surface;
+}
+
 struct Clusters {
     ClusterGraph graph;
     ClusterTable table;
     std::vector<std::uint8_t> surfel;  // by slot: on the rough side, to be drawn as surfels
+
+    explicit Clusters(const Surface& surface)
+        : graph(surface.faces),
+          table(surface.faces, surface.scores),
+          surfel(surface.faces.size(), surface.settings.all_surfels) {
+        for (std::size_t s = 0; s < surface.scores.size(); ++s)
+            surfel[s] = surface.scores[s] > surface.threshold;
+    }
 };
 
 bool everything(std::uint32_t) {
@@ -124,10 +158,10 @@ bool everything(std::uint32_t) {
 }
 
 template <class Tick>
-void run_phase_one(const IndexedMesh& mesh, const FaceGraph& faces, const Settings& settings, float threshold,
-                   Clusters& clusters, const Tick& tick) {
+void run_phase_one(const IndexedMesh& mesh, const Surface& surface, Clusters& clusters, const Tick& tick) {
+    const Settings& settings = surface.settings;
     if (settings.thesis) {
-        ThesisMetric metric(mesh, faces, clusters.table, settings.max_area);
+        ThesisMetric metric(mesh, surface.faces, clusters.table, settings.max_area);
         contract(clusters.graph, metric, settings.phase1_cost, 1, everything, tick);
         return;
     }
@@ -135,7 +169,7 @@ void run_phase_one(const IndexedMesh& mesh, const FaceGraph& faces, const Settin
     FlatnessMetric flatness(clusters.table, clusters.surfel, limits);
     contract(clusters.graph, flatness, settings.phase1_cost, 1, everything, tick);
     limits.max_area *= kCrumbSlack;
-    CrumbMetric crumbs(clusters.table, clusters.surfel, threshold, limits, kCrumb * settings.max_area);
+    CrumbMetric crumbs(clusters.table, clusters.surfel, surface.threshold, limits, kCrumb * settings.max_area);
     contract(clusters.graph, crumbs, settings.phase1_cost, 1, everything, tick);
 }
 
@@ -173,55 +207,30 @@ void run_phase_two(const Settings& settings, Clusters& clusters, const Tick& tic
 PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, const Progress& progress) {
     check(options);
     Stopwatch watch;
-    FaceGraph faces;
-    Settings settings{};
-    std::optional<SurfaceGrid> grid;
-    FaceRoughness roughness;
-    FaceAdjacency adjacency;
-    tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh); },
-                         [&] {
-                             faces = order_faces(mesh);
-                             settings = resolve(options, faces);
-                             if (!settings.scored()) return;
-                             grid.emplace(mesh, faces);
-                             roughness = grid->measure(faces);
-                         });
-    faces.links = link_faces(mesh, faces, adjacency);
-    std::vector<float> scores;
-    if (settings.scored()) scores = score_faces(mesh, faces, *grid, roughness);
-    grid.reset();
-    adjacency = {};
-    const std::size_t count = faces.size();
-
-    const bool all_surfels = options.representation == ForcedRepresentation::kSurfels;
-    Clusters clusters{ClusterGraph(faces), ClusterTable(faces, scores), std::vector<std::uint8_t>(count, all_surfels)};
-    const float threshold = settings.share ? score_at_share(scores, *settings.share) : kRoughScore;
-    for (std::size_t s = 0; s < scores.size(); ++s)
-        clusters.surfel[s] = scores[s] > threshold;
-    const double seconds_prepared = watch.lap();
+    const Surface surface = measure_surface(mesh, options);
+    const Settings& settings = surface.settings;
+    Clusters clusters(surface);
+    double seconds_selection = watch.lap();
 
     const auto tick = [&](std::size_t) {
-        const double merged = static_cast<double>(clusters.graph.tree().size());
-        if (progress) progress("cluster", merged / static_cast<double>(count));
+        const auto merged = static_cast<double>(clusters.graph.tree().size());
+        if (progress) progress("cluster", merged / static_cast<double>(surface.faces.size()));
     };
-    run_phase_one(mesh, faces, settings, threshold, clusters, tick);
+    run_phase_one(mesh, surface, clusters, tick);
     const double seconds_phase1 = watch.lap();
 
     if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
-    const double seconds_chosen = watch.lap();
+    seconds_selection += watch.lap();
 
-    if (options.representation != ForcedRepresentation::kTriangles) run_phase_two(settings, clusters, tick);
+    if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
     const double seconds_phase2 = watch.lap();
+    if (progress) progress("cluster", 1.0);
 
-    const std::vector<std::uint32_t> cluster_of_slot = cluster_of_slots(clusters.graph);
-    PatchSet set = assemble_patches(mesh, faces, clusters.graph, cluster_of_slot, clusters.surfel);
-    std::vector<std::uint8_t> surfel_face(count);
-    for (std::size_t s = 0; s < count; ++s)
-        surfel_face[s] = clusters.surfel[cluster_of_slot[s]];
-    set.stats.selection_auc = measure_selection_auc(mesh, faces, surfel_face);
+    PatchSet set = assemble_patches(mesh, surface.faces, clusters.graph, clusters.surfel);
+    set.stats.selection_auc = measure_selection_auc(mesh, surface.faces, set);
     set.stats.seconds_phase1 = seconds_phase1;
     set.stats.seconds_phase2 = seconds_phase2;
-    set.stats.seconds_selection = seconds_prepared + seconds_chosen + watch.lap();
+    set.stats.seconds_selection = seconds_selection + watch.lap();
     return set;
 }
 

@@ -33,6 +33,7 @@ class ClusterTable {
                             scores.empty() ? 0.0f : faces.area[s] * scores[s]};
         }
     }
+    void prefetch(std::uint32_t slot) const { __builtin_prefetch(&clusters_[slot], 1); }
     const Cluster& operator[](std::uint32_t slot) const { return clusters_[slot]; }
     /// E_shape of merging a and b over a common border of `length`.
     float shape_cost(std::uint32_t a, std::uint32_t b, float length) const {
@@ -83,6 +84,8 @@ class ThesisMetric {
         directions_[a] += directions_[b];
     }
 
+    void prefetch(std::uint32_t slot) const { clusters_.prefetch(slot); }
+
   private:
     ClusterTable& clusters_;
     float max_area_;
@@ -121,6 +124,8 @@ class FlatnessMetric {
     static float cost(std::uint32_t, std::uint32_t, float bound) { return bound; }
     void merge(std::uint32_t a, std::uint32_t b, float length) { clusters_.merge(a, b, length); }
 
+    void prefetch(std::uint32_t slot) const { clusters_.prefetch(slot); }
+
   private:
     ClusterTable& clusters_;
     const std::vector<std::uint8_t>& rough_;
@@ -152,6 +157,8 @@ class CrumbMetric {
         clusters_.merge(a, b, length);
     }
 
+    void prefetch(std::uint32_t slot) const { clusters_.prefetch(slot); }
+
   private:
     ClusterTable& clusters_;
     std::vector<std::uint8_t>& rough_;
@@ -171,6 +178,8 @@ class SizeMetric {
     }
     static float cost(std::uint32_t, std::uint32_t, float bound) { return bound; }
     void merge(std::uint32_t a, std::uint32_t b, float length) { clusters_.merge(a, b, length); }
+
+    void prefetch(std::uint32_t slot) const { clusters_.prefetch(slot); }
 
   private:
     ClusterTable& clusters_;

@@ -6,6 +6,7 @@
 //   float bound(a, b, length)   a lower bound of the cost, or kNever; cheap
 //   float cost(a, b, bound)     the cost, at least the bound, or kNever; computed only when the pair reaches the top
 //   void merge(a, b, length)    a becomes the union; b is gone
+//   void prefetch(slot)         starts loading the cluster's data
 // kNever excludes a pair for as long as neither cluster changes.
 #pragma once
 
@@ -21,7 +22,7 @@ namespace splice {
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// Contracts `graph` while the cheapest pair costs at most `threshold`. `eligible(slot)` tells who may take part;
-/// `tick(n)` is called after n merges, now and then. Returns the number of merges.
+/// `tick(n)` is called after n merges, some 200 times. Returns the number of merges.
 template <class Metric, class Eligible, class Tick>
 std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::uint32_t phase,
                      const Eligible& eligible, const Tick& tick) {
@@ -29,6 +30,11 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
     // Versions only grow, so a pair whose stamp is not the current one has seen a cluster change. Odd: cost, not bound.
     const auto stamp_of = [&](std::uint32_t a, std::uint32_t b) { return 2 * (graph.version(a) + graph.version(b)); };
     const auto stale = [&](const QueuedPair& pair) { return (pair.stamp & ~1u) != stamp_of(pair.a(), pair.b); };
+
+    const auto prefetch = [&](std::uint32_t slot) {
+        graph.prefetch(slot);
+        metric.prefetch(slot);
+    };
 
     PairQueue queue;
     const auto offer = [&](std::uint32_t a, std::uint32_t b, float length) {
@@ -42,6 +48,7 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
         }
     }
 
+    const std::size_t tick_every = graph.slots() / 200 + 1;
     std::size_t merges = 0;
     while (const QueuedPair* top = queue.top(stale)) {
         const float key = top->cost();
@@ -54,12 +61,21 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
                 continue;
             }
         }
+        // Contraction hops about in memory: ask early for what it needs of the neighbours and of the next pair.
+        for (const std::uint32_t slot : {a, b}) {
+            for (const ClusterLink& l : graph.links(slot))
+                prefetch(l.slot);
+        }
+        if (const QueuedPair* next = queue.peek()) {
+            prefetch(next->a());
+            prefetch(next->b);
+        }
         metric.merge(a, b, graph.border(a, b));
         graph.merge(a, b, key, phase);
         for (const ClusterLink& l : graph.links(a)) {
             if (eligible(l.slot)) offer(std::min(a, l.slot), std::max(a, l.slot), l.length);
         }
-        if (++merges % 4096 == 0) tick(merges);
+        if (++merges % tick_every == 0) tick(merges);
     }
     return merges;
 }

@@ -65,6 +65,9 @@ class PairQueue {
         }
     }
 
+    /// The least of the pairs at hand, stale or not; a hint of what comes next.
+    const QueuedPair* peek() const { return heap_.empty() ? nullptr : &heap_.front(); }
+
     /// Removes the top.
     void pop() {
         const QueuedPair last = heap_.back();

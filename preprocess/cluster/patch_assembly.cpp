@@ -5,6 +5,9 @@
 
 namespace splice {
 
+namespace {
+
+/// The cluster that each slot ended in, named by that cluster's slot.
 std::vector<std::uint32_t> cluster_of_slots(const ClusterGraph& graph) {
     // A merged slot's cluster has a lower slot, so one pass upwards resolves every chain.
     std::vector<std::uint32_t> cluster(graph.slots());
@@ -13,9 +16,11 @@ std::vector<std::uint32_t> cluster_of_slots(const ClusterGraph& graph) {
     return cluster;
 }
 
+}  // namespace
+
 PatchSet assemble_patches(const IndexedMesh& mesh, const FaceGraph& faces, ClusterGraph& graph,
-                          const std::vector<std::uint32_t>& cluster_of_slot,
                           const std::vector<std::uint8_t>& surfel_slot) {
+    const std::vector<std::uint32_t> cluster_of_slot = cluster_of_slots(graph);
     PatchSet set;
     std::vector<std::uint32_t> patch_of_slot(faces.size());
     for (std::uint32_t s = 0; s < faces.size(); ++s) {

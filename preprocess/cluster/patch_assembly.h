@@ -9,13 +9,10 @@
 
 namespace splice {
 
-/// The cluster that each slot ended in, named by that cluster's slot.
-std::vector<std::uint32_t> cluster_of_slots(const ClusterGraph& graph);
-
 /// One patch a live cluster, in slot order, which is along the space-filling curve. `surfel_slot` tells, for each live
-/// slot, whether the patch is drawn as surfels. Leaves stats.seconds_* and stats.selection_auc alone.
+/// slot, whether the patch is drawn as surfels. Takes the graph's merge tree. Leaves stats.seconds_* and
+/// stats.selection_auc alone.
 PatchSet assemble_patches(const IndexedMesh& mesh, const FaceGraph& faces, ClusterGraph& graph,
-                          const std::vector<std::uint32_t>& cluster_of_slot,
                           const std::vector<std::uint8_t>& surfel_slot);
 
 }  // namespace splice

@@ -14,8 +14,9 @@ constexpr std::size_t kFine = 3;  // grid cells a radius
 constexpr float kFineSide = kRoughnessRadius / kFine;
 constexpr std::size_t kBlocksPerSide = 51;  // blocks of one radius across the unit box, one to spare
 constexpr std::size_t kCellsPerBlock = kFine * kFine * kFine;
-constexpr std::size_t kDirections = 24;    // the sides of a cube, four squares each
-constexpr double kSampleBudget = 400'000;  // samples beyond one a face
+constexpr std::size_t kDirections = 24;     // the sides of a cube, four squares each
+constexpr float kSheetCosine = 0.8660254f;  // 30 degrees
+constexpr double kSampleBudget = 400'000;   // samples beyond one a face
 
 std::size_t block_of(float x) {
     return static_cast<std::size_t>(std::clamp((x + 0.5f) / kRoughnessRadius, 0.0f, kBlocksPerSide - 1.0f));
@@ -44,6 +45,11 @@ std::uint64_t cell_key(const Vec3f& p, const Vec3f& n) {
     return (block_index(block[0], block[1], block[2]) * kCellsPerBlock + in_block) * kDirections + direction_of(n);
 }
 
+/// The spread of a set of normals in radians, 0 to sqrt 2: for small spreads their RMS angle to the mean.
+float normal_spread(const Vec3f& area_weighted_sum, float area) {
+    return std::sqrt(std::max(0.0f, 2 * (1 - area_weighted_sum.norm() / area)));
+}
+
 /// First sample of each slot, and the number of all: one a face and one more for each cell-sized piece of its area.
 std::vector<std::uint32_t> count_samples(const FaceGraph& faces) {
     double total = 0;
@@ -66,18 +72,34 @@ Vec3f sample_position(const std::array<Vec3f, 3>& corners, std::uint32_t i, std:
     return a + static_cast<float>(u) * (b - a) + static_cast<float>(v) * (c - a);
 }
 
-}  // namespace
+/// The surface inside one grid cell that faces one way.
+struct Cell {
+    Vec3f position = Vec3f::Zero();    // area-weighted mean
+    Vec3f normal_sum = Vec3f::Zero();  // area weighted
+    Vec3f direction = Vec3f::Zero();   // unit
+    float area = 0;
+    float triangles = 0;  // fractions of them
+};
 
-SurfaceGrid::SurfaceGrid(const IndexedMesh& mesh, const FaceGraph& faces) : sample_begin_(count_samples(faces)) {
+struct SurfaceGrid {
+    std::vector<Cell> cells;                  // by block of one radius
+    std::vector<std::uint32_t> block_begin;   // into cells
+    std::vector<std::uint32_t> sample_begin;  // by slot: faces are cut into samples of about one cell
+    std::vector<std::uint32_t> cell_of_sample;
+};
+
+SurfaceGrid build_grid(const IndexedMesh& mesh, const FaceGraph& faces) {
+    SurfaceGrid grid;
+    grid.sample_begin = count_samples(faces);
     struct Sample {
         Vec3f position;
         std::uint32_t slot;
     };
-    std::vector<Sample> samples(sample_begin_.back());
+    std::vector<Sample> samples(grid.sample_begin.back());
     std::vector<std::uint64_t> keys(samples.size());
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t s) {
         const auto corners = faces.corners(mesh, s);
-        const std::uint32_t first = sample_begin_[s], count = sample_begin_[s + 1] - first;
+        const std::uint32_t first = grid.sample_begin[s], count = grid.sample_begin[s + 1] - first;
         for (std::uint32_t i = 0; i < count; ++i) {
             const Vec3f position = sample_position(corners, i, count);
             samples[first + i] = {position, static_cast<std::uint32_t>(s)};
@@ -86,93 +108,95 @@ SurfaceGrid::SurfaceGrid(const IndexedMesh& mesh, const FaceGraph& faces) : samp
     });
     tbb::parallel_sort(keys.begin(), keys.end());
 
-    cell_of_sample_.resize(samples.size());
-    block_begin_.assign(kBlocksPerSide * kBlocksPerSide * kBlocksPerSide + 1, 0);
+    grid.cell_of_sample.resize(samples.size());
+    grid.block_begin.assign(kBlocksPerSide * kBlocksPerSide * kBlocksPerSide + 1, 0);
     std::uint64_t open = ~std::uint64_t{0};
     for (const std::uint64_t key : keys) {
         if (key >> 32 != open) {
             open = key >> 32;
-            cells_.emplace_back();
-            ++block_begin_[open / (kCellsPerBlock * kDirections) + 1];
+            grid.cells.emplace_back();
+            ++grid.block_begin[open / (kCellsPerBlock * kDirections) + 1];
         }
         const auto i = static_cast<std::uint32_t>(key);
         const std::uint32_t slot = samples[i].slot;
-        const float share = 1 / static_cast<float>(sample_begin_[slot + 1] - sample_begin_[slot]);
+        const float share = 1 / static_cast<float>(grid.sample_begin[slot + 1] - grid.sample_begin[slot]);
         const float area = faces.area[slot] * share;
-        Cell& cell = cells_.back();
+        Cell& cell = grid.cells.back();
         cell.position += area * samples[i].position;
         cell.normal_sum += area * faces.normal[slot];
         cell.area += area;
         cell.triangles += share;
-        cell_of_sample_[i] = static_cast<std::uint32_t>(cells_.size() - 1);
+        grid.cell_of_sample[i] = static_cast<std::uint32_t>(grid.cells.size() - 1);
     }
-    for (std::size_t b = 1; b < block_begin_.size(); ++b)
-        block_begin_[b] += block_begin_[b - 1];
-    for (Cell& cell : cells_) {
+    for (std::size_t b = 1; b < grid.block_begin.size(); ++b)
+        grid.block_begin[b] += grid.block_begin[b - 1];
+    for (Cell& cell : grid.cells) {
         cell.position /= cell.area;
         cell.direction = cell.normal_sum.normalized();
     }
+    return grid;
 }
 
 template <class Visit>
-void SurfaceGrid::for_each_in_ball(const Vec3f& centre, const Visit& visit) const {
+void for_each_in_ball(const SurfaceGrid& grid, const Vec3f& centre, const Visit& visit) {
     const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
     const auto high = [](std::size_t i) { return std::min(i + 1, kBlocksPerSide - 1); };
     const std::size_t x = block_of(centre.x()), y = block_of(centre.y()), z = block_of(centre.z());
     for (std::size_t bz = low(z); bz <= high(z); ++bz) {
         for (std::size_t by = low(y); by <= high(y); ++by) {
-            const std::uint32_t last = block_begin_[block_index(high(x), by, bz) + 1];
-            for (std::uint32_t c = block_begin_[block_index(low(x), by, bz)]; c < last; ++c) {
-                const Vec3f offset = cells_[c].position - centre;
-                if (offset.squaredNorm() <= kRoughnessRadius * kRoughnessRadius) visit(cells_[c]);
+            const std::uint32_t last = grid.block_begin[block_index(high(x), by, bz) + 1];
+            for (std::uint32_t c = grid.block_begin[block_index(low(x), by, bz)]; c < last; ++c) {
+                const Vec3f offset = grid.cells[c].position - centre;
+                if (offset.squaredNorm() <= kRoughnessRadius * kRoughnessRadius) visit(grid.cells[c]);
             }
         }
     }
 }
 
-FaceRoughness SurfaceGrid::measure(const FaceGraph& faces) const {
-    struct Around {
-        float ball, triangles;
-    };
-    std::vector<Around> around(cells_.size());
-    tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t c) {
-        constexpr float kDisk = std::numbers::pi_v<float> * kRoughnessRadius * kRoughnessRadius;
-        Vec3f normal_sum = Vec3f::Zero();
-        float area = 0, triangles = 0;
-        for_each_in_ball(cells_[c].position, [&](const Cell& cell) {
-            normal_sum += cell.normal_sum;
-            area += cell.area;
-            triangles += cell.triangles;
-        });
-        around[c] = {normal_spread(normal_sum, area), triangles * kDisk / area};
+struct Neighbourhood {
+    float ball, sheet, triangles;
+};
+
+Neighbourhood look_around(const SurfaceGrid& grid, const Cell& centre) {
+    constexpr float kDisk = std::numbers::pi_v<float> * kRoughnessRadius * kRoughnessRadius;
+    Vec3f ball_sum = Vec3f::Zero(), sheet_sum = Vec3f::Zero();
+    float ball_area = 0, sheet_area = 0, triangles = 0;
+    for_each_in_ball(grid, centre.position, [&](const Cell& cell) {
+        ball_sum += cell.normal_sum;
+        ball_area += cell.area;
+        triangles += cell.triangles;
+        if (cell.direction.dot(centre.direction) < kSheetCosine) return;
+        sheet_sum += cell.normal_sum;
+        sheet_area += cell.area;
     });
+    // A cell whose normals cancel has no direction and no sheet.
+    const float sheet = sheet_area > 0 ? normal_spread(sheet_sum, sheet_area) : normal_spread(ball_sum, ball_area);
+    return {normal_spread(ball_sum, ball_area), sheet, triangles * kDisk / ball_area};
+}
+
+}  // namespace
+
+FaceRoughness measure_roughness(const IndexedMesh& mesh, const FaceGraph& faces) {
+    const SurfaceGrid grid = build_grid(mesh, faces);
+    std::vector<Neighbourhood> around(grid.cells.size());
+    tbb::parallel_for(std::size_t{0}, grid.cells.size(),
+                      [&](std::size_t c) { around[c] = look_around(grid, grid.cells[c]); });
 
     FaceRoughness result;
-    result.ball.resize(faces.size());
-    result.triangles.resize(faces.size());
+    for (auto* values : {&result.ball, &result.sheet, &result.triangles})
+        values->resize(faces.size());
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t s) {
-        Around sum{0, 0};
-        for (std::uint32_t i = sample_begin_[s]; i < sample_begin_[s + 1]; ++i) {
-            sum.ball += around[cell_of_sample_[i]].ball;
-            sum.triangles += around[cell_of_sample_[i]].triangles;
+        Neighbourhood sum{0, 0, 0};
+        for (std::uint32_t i = grid.sample_begin[s]; i < grid.sample_begin[s + 1]; ++i) {
+            const Neighbourhood& n = around[grid.cell_of_sample[i]];
+            sum = {sum.ball + n.ball, sum.sheet + n.sheet, sum.triangles + n.triangles};
         }
-        const auto count = static_cast<float>(sample_begin_[s + 1] - sample_begin_[s]);
+        const auto count = static_cast<float>(grid.sample_begin[s + 1] - grid.sample_begin[s]);
         result.ball[s] = sum.ball / count;
+        result.sheet[s] = sum.sheet / count;
         result.triangles[s] = sum.triangles / count;
     });
     return result;
-}
-
-float SurfaceGrid::sheet_spread(const Vec3f& centre, const Vec3f& normal, float cone) const {
-    const float least = std::cos(cone);
-    Vec3f normal_sum = Vec3f::Zero();
-    float area = 0;
-    for_each_in_ball(centre, [&](const Cell& cell) {
-        if (cell.direction.dot(normal) < least) return;
-        normal_sum += cell.normal_sum;
-        area += cell.area;
-    });
-    return area > 0 ? normal_spread(normal_sum, area) : 0;
 }
 
 }  // namespace splice

@@ -13,8 +13,7 @@ namespace splice {
 
 namespace {
 
-constexpr float kFewTriangles = 9;     // on a disk of kRoughnessRadius
-constexpr float kSheetCone = 0.5236f;  // 30 degrees
+constexpr float kFewTriangles = 9;  // on a disk of kRoughnessRadius
 constexpr float kSheetFactor = 2;
 constexpr float kContinues = 0.0175f;  // radians between neighbours, 1 degree
 constexpr float kPlaneBend = 0.0044f;  // radians between neighbours, 0.25 degrees
@@ -72,18 +71,15 @@ std::vector<std::uint8_t> find_planes(const FaceGraph& faces) {
 
 }  // namespace
 
-std::vector<float> score_faces(const IndexedMesh& mesh, const FaceGraph& faces, const SurfaceGrid& grid,
-                               const FaceRoughness& roughness) {
+std::vector<float> score_faces(const FaceGraph& faces, const FaceRoughness& roughness) {
     std::vector<std::uint8_t> continued, plane;
     tbb::parallel_invoke([&] { continued = find_continued(faces); }, [&] { plane = find_planes(faces); });
     std::vector<float> scores(faces.size());
     tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t s) {
         if (plane[s]) return;  // 0
         scores[s] = roughness.ball[s] * std::min(1.0f, roughness.triangles[s] / kFewTriangles);
-        if (!continued[s] || scores[s] <= kRoughScore / 2) return;  // low enough for any choice
-        const auto [a, b, c] = faces.corners(mesh, s);
-        const float sheet = kSheetFactor * grid.sheet_spread((a + b + c) / 3.0f, faces.normal[s], kSheetCone);
-        if (sheet <= kRoughScore) scores[s] = std::min(scores[s], sheet);
+        const float sheet = kSheetFactor * roughness.sheet[s];
+        if (continued[s] && sheet <= kRoughScore) scores[s] = std::min(scores[s], sheet);
     });
     return scores;
 }

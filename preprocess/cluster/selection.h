@@ -31,8 +31,7 @@ namespace splice {
 inline constexpr float kRoughScore = 0.075f;  // radians; above: surfels
 
 /// The score of each face, radians, in slot order. `faces` with its links.
-std::vector<float> score_faces(const IndexedMesh& mesh, const FaceGraph& faces, const SurfaceGrid& grid,
-                               const FaceRoughness& roughness);
+std::vector<float> score_faces(const FaceGraph& faces, const FaceRoughness& roughness);
 
 /// The score that a share of the faces stays at or below; share in 0..1.
 float score_at_share(const std::vector<float>& scores, double share);

@@ -130,10 +130,10 @@ double area_under_curve(std::vector<Compared> compared) {
 
 }  // namespace
 
-double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces,
-                             const std::vector<std::uint8_t>& surfel_slot) {
-    const auto surfels = static_cast<std::size_t>(std::count(surfel_slot.begin(), surfel_slot.end(), 1));
-    if (surfels == 0 || surfels == surfel_slot.size()) return 0.5;
+double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces, const PatchSet& patches) {
+    const auto is_surfel = [](const ClusterPatch& p) { return p.representation == format::Representation::kSurfels; };
+    const auto surfels = std::count_if(patches.patches.begin(), patches.patches.end(), is_surfel);
+    if (surfels == 0 || surfels == std::ssize(patches.patches)) return 0.5;
     const std::vector<Point> points = spread_points(mesh, faces);
     const PointGrid grid(faces, points);
     std::vector<Compared> compared((points.size() + kEvery - 1) / kEvery);
@@ -141,7 +141,8 @@ double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces,
         std::vector<Vec3f> normals;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const Point& p = points[i * kEvery];
-            compared[i] = {roughness_at(p.position, grid, normals), surfel_slot[p.slot] != 0};
+            compared[i] = {roughness_at(p.position, grid, normals),
+                           is_surfel(patches.patches[patches.triangle_patch[faces.face_of_slot[p.slot]]])};
         }
     });
     return area_under_curve(std::move(compared));

@@ -2,9 +2,7 @@
 #pragma once
 
 #include "preprocess/cluster/face_graph.h"
-
-#include <cstdint>
-#include <vector>
+#include "preprocess/cluster/patch_set.h"
 
 namespace splice {
 
@@ -13,7 +11,6 @@ namespace splice {
 /// the face normals at all points within 0.02 of the model's size and their mean. Up to 80,000 points are spread evenly
 /// over the area, the same ones in every run, so that about 40 lie on a disk of that radius; each fourth is compared.
 /// 0.5 if one kind is missing.
-double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces,
-                             const std::vector<std::uint8_t>& surfel_slot);
+double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces, const PatchSet& patches);
 
 }  // namespace splice

@@ -24,10 +24,6 @@ SourceMesh scaled(SourceMesh mesh, const Vec3d& by) {
     return mesh;
 }
 
-FaceRoughness measure(const IndexedMesh& mesh, const FaceGraph& faces) {
-    return SurfaceGrid(mesh, faces).measure(faces);
-}
-
 }  // namespace
 
 TEST_CASE("Flat faces are triangles up to their edges, however fine the mesh and thin the plate") {
@@ -73,32 +69,30 @@ TEST_CASE("A machined part keeps its triangles") {
 
 TEST_CASE("Roughness is zero on a plane, known on a sphere and on an edge") {
     const IndexedMesh plane = repaired(shapes::checkerboard(2, 100));
-    const FaceRoughness flat = measure(plane, order_faces(plane));
+    const FaceRoughness flat = measure_roughness(plane, order_faces(plane));
     CHECK(*std::max_element(flat.ball.begin(), flat.ball.end()) < 1e-3f);
 
     // Within a ball of radius r on a sphere of radius R normals spread by r / (R sqrt 2): the RMS distance from the
     // centre of a disk is r / sqrt 2.
     const IndexedMesh sphere = repaired(shapes::ico_sphere(80));
-    const FaceRoughness round = measure(sphere, order_faces(sphere));
+    const FaceRoughness round = measure_roughness(sphere, order_faces(sphere));
     const double mean =
         std::accumulate(round.ball.begin(), round.ball.end(), 0.0) / static_cast<double>(round.ball.size());
     CHECK(mean == Approx(0.02 / (0.5 * std::sqrt(2))).epsilon(0.1));
 
     const IndexedMesh cube = repaired(shapes::cube(100));
     const FaceGraph faces = order_faces(cube);
-    const SurfaceGrid grid(cube, faces);
-    const FaceRoughness edges = grid.measure(faces);
+    const FaceRoughness edges = measure_roughness(cube, faces);
     std::size_t on_edge = 0;
     for (std::size_t s = 0; s < faces.size(); ++s) {
         const auto [a, b, c] = faces.corners(cube, s);
-        const Vec3f centre = (a + b + c) / 3.0f, size = centre.cwiseAbs();
+        const Vec3f size = ((a + b + c) / 3.0f).cwiseAbs();
         // Beside an edge, away from corners.
         if (size.minCoeff() > 0.4f || (size.array() > 0.496f).count() != 2) continue;
         ++on_edge;
         // Half the ball's surface on either side: the mean of two orthogonal unit normals is sqrt(1/2) long.
         CHECK(static_cast<double>(edges.ball[s]) == Approx(std::sqrt(2 * (1 - std::sqrt(0.5)))).epsilon(0.15));
-        CHECK(grid.sheet_spread(centre, faces.normal[s], 0.5f) < 1e-3f);
-        CHECK(grid.sheet_spread(centre, faces.normal[s], 2.0f) > 0.5f);
+        CHECK(edges.sheet[s] < 1e-3f);
     }
     CHECK(on_edge > 100);
 }
@@ -106,7 +100,7 @@ TEST_CASE("Roughness is zero on a plane, known on a sphere and on an edge") {
 TEST_CASE("The number of triangles on a disk follows the size of the triangles") {
     for (const std::uint32_t cells : {20u, 50u, 100u}) {
         const IndexedMesh mesh = repaired(shapes::checkerboard(2, cells));
-        const FaceRoughness roughness = measure(mesh, order_faces(mesh));
+        const FaceRoughness roughness = measure_roughness(mesh, order_faces(mesh));
         const double expected = std::numbers::pi * 0.02 * 0.02 * 2 * cells * cells;
         for (const float n : roughness.triangles)
             CHECK(static_cast<double>(n) == Approx(expected).epsilon(0.35));
@@ -189,15 +183,21 @@ TEST_CASE("The AUC is 1 for a perfect choice, 0 for its opposite, one half by lo
     }
     const IndexedMesh mesh = bare_mesh(positions, triangles);
     const FaceGraph faces = order_faces(mesh);
-    std::vector<std::uint8_t> right(faces.size()), wrong(faces.size()), lot(faces.size());
-    for (std::size_t s = 0; s < faces.size(); ++s) {
-        right[s] = faces.corners(mesh, s)[0].x() > 0;
-        wrong[s] = !right[s];
-        lot[s] = (faces.face_of_slot[s] * 2654435761u >> 31) != 0;
-    }
-    CHECK(measure_selection_auc(mesh, faces, right) > 0.98);
-    CHECK(measure_selection_auc(mesh, faces, wrong) < 0.02);
-    CHECK(measure_selection_auc(mesh, faces, lot) == Approx(0.5).margin(0.02));
-    CHECK(measure_selection_auc(mesh, faces, std::vector<std::uint8_t>(faces.size(), 1)) == 0.5);
-    CHECK(measure_selection_auc(mesh, faces, std::vector<std::uint8_t>(faces.size(), 0)) == 0.5);
+    // Two patches, whatever their shape: the AUC only asks for the representation at a point.
+    const auto auc = [&](const auto& is_surfel) {
+        PatchSet set;
+        set.patches.resize(2);
+        set.patches[1].representation = format::Representation::kSurfels;
+        for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
+            set.triangle_patch.push_back(is_surfel(f));
+        return measure_selection_auc(mesh, faces, set);
+    };
+    const auto right = [&](std::uint32_t f) { return mesh.positions[mesh.triangles[f][0]].x() > 0; };
+    CHECK(auc(right) > 0.98);
+    CHECK(auc([&](std::uint32_t f) { return !right(f); }) < 0.02);
+    CHECK(auc([&](std::uint32_t f) { return (f * 2654435761u >> 31) != 0; }) == Approx(0.5).margin(0.02));
+    PatchSet one_kind;
+    one_kind.patches.resize(1);
+    one_kind.triangle_patch.resize(mesh.triangles.size(), 0);
+    CHECK(measure_selection_auc(mesh, faces, one_kind) == 0.5);
 }

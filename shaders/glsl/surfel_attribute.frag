@@ -16,7 +16,8 @@ layout(location = 0) out vec4 out_sum;  // blended one to one: (w rgb, w)
 void main() {
     const vec2 pixel = gl_FragCoord.xy;
     const float anchor_depth = in_colour_depth.w;
-    const SplatHit hit = cast_ray(pixel, in_anchor_g.xy, in_plane_map, in_anchor_g.zw, anchor_depth, in_rise_offset.yz);
+    const SplatHit hit = cast_ray(pixel, in_anchor_g.xy, in_plane_map, in_anchor_g.zw, anchor_depth, in_rise_offset.yz,
+                                  in_rise_offset.x < 0);
     const vec2 d = pixel - in_anchor_g.xy;
     const vec3 conic = in_conic_weight.xyz;
     // x^T V^-1 x / 2. The affine ellipse holds the disk except where perspective bends it; there the disk itself takes
@@ -25,7 +26,8 @@ void main() {
     if (!hit.on_disk && exponent >= 1) discard;
     exponent = min(min(exponent, hit.distance2), 1);
     // Tested against the pushed-back depth of the visibility pass. Beyond the disk its plane may be anywhere.
-    const float depth = clamp(hit.depth, anchor_depth - in_rise_offset.x, anchor_depth + in_rise_offset.x);
+    const float rise = abs(in_rise_offset.x);
+    const float depth = clamp(hit.depth, anchor_depth - rise, anchor_depth + rise);
     gl_FragDepth = encode_depth(depth);
     if (VIEW == VIEW_OVERLAP) {
         out_sum = vec4(1);

@@ -44,5 +44,5 @@ void main() {
     out_plane_map = splat.plane_map;
     out_conic_weight = vec4(splat.conic, splat.weight);
     out_colour_depth = vec4(colour, splat.anchor_depth);
-    out_rise_offset = vec3(splat.rise, splat.plane_offset);
+    out_rise_offset = vec3(flagged(splat.rise, is_sub_pixel(splat)), splat.plane_offset);
 }

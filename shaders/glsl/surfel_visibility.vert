@@ -17,5 +17,6 @@ void main() {
     place_primitive(drawn, splat.anchor, splat.disk_bounds);
     out_anchor_g = vec4(splat.anchor, splat.g);
     out_plane_map = splat.plane_map;
-    out_depth_epsilon_offset = vec4(splat.anchor_depth, splat.epsilon, splat.plane_offset);
+    out_depth_epsilon_offset =
+        vec4(splat.anchor_depth, flagged(splat.epsilon, is_sub_pixel(splat)), splat.plane_offset);
 }

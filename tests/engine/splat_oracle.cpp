@@ -38,6 +38,14 @@ SplatOracle::SplatOracle(const Disk& disk, const Camera& camera, std::uint32_t w
     if (crosses_near_) return;
 
     centre_px_ = window(centre_);
+    glm::dvec2 low = centre_px_, high = centre_px_;
+    for (int degrees = 0; degrees < 360; ++degrees) {
+        const double angle = glm::radians(static_cast<double>(degrees));
+        const glm::dvec2 rim = window(centre_ + radius_ * (std::cos(angle) * s + std::sin(angle) * t));
+        low = glm::min(low, rim);
+        high = glm::max(high, rim);
+    }
+    sub_pixel_ = high.x - low.x < 1 && high.y - low.y < 1;
     // Central differences of the projection along the tangents.
     const double h = 1e-6 * -centre_.z;
     const glm::dvec2 along_s = (window(centre_ + h * s) - window(centre_ - h * s)) / (2 * h);
@@ -81,13 +89,19 @@ SplatPixel SplatOracle::at(std::uint32_t x, std::uint32_t y) const {
         result.weight = result.on_disk ? std::exp(-exponent) : 0;
         return result;
     }
+    if (sub_pixel_ && glm::floor(pixel) == glm::floor(centre_px_)) {
+        const glm::dvec2 from_edge = glm::abs(centre_px_ - glm::round(centre_px_));
+        result.certainty = std::min({result.certainty, from_edge.x, from_edge.y});
+        result.between = !result.on_disk;
+        if (result.between) result.depth = -centre_.z;
+    }
     if (prefilter_) {
         const glm::dvec2 d = pixel - centre_px_;
         const double ewa = glm::dot(d, covariance_inverse_ * d) / 2;
         result.certainty = std::min(result.certainty, std::abs(ewa - 1));
         exponent = std::min(exponent, ewa);
     }
-    const bool shown = result.on_disk || exponent < 1;
+    const bool shown = result.on_disk || result.between || exponent < 1;
     result.weight = shown ? (prefilter_ ? std::max(peak_, 1.0 / 4096) : 1) * std::exp(-std::min(exponent, 1.0)) : 0;
     return result;
 }

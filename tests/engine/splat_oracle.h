@@ -13,10 +13,11 @@
 namespace splice::test {
 
 struct SplatPixel {
-    bool on_disk = false;       // the ray of the pixel's centre meets the disk in front of the near plane
-    double depth = 0;           // where the ray meets the disk, or of the centre
-    double weight = 0;          // EWA; 0 beyond the cut
-    double certainty = 0;       // how far, relatively, the decisions above are from turning
+    bool on_disk = false;  // the ray of the pixel's centre meets the disk in front of the near plane
+    bool between = false;  // the disk is narrower than a pixel, lies between pixel centres and has its centre here
+    double depth = 0;      // where the ray meets the disk, or of the centre
+    double weight = 0;     // EWA; 0 beyond the cut
+    double certainty = 0;  // how far, relatively, the decisions above are from turning
 };
 
 class SplatOracle {
@@ -38,6 +39,7 @@ class SplatOracle {
     glm::dvec3 centre_, normal_;  // view space
     double radius_;
     bool crosses_near_ = false;
+    bool sub_pixel_ = false;
     glm::dvec2 centre_px_{0};
     glm::dmat2 covariance_inverse_{0};
     double peak_ = 1;

@@ -52,6 +52,14 @@ std::vector<SplatCase> splat_cases() {
         {"seen edge-on", {{0.203f, 0, -2}, {0, 1, 0}, 0.4f, 0.01f}, eye, 160, 120, true, false},
         {"a pixel large", {{0.303f, 0.107f, -2}, tilted(30), 0.012f, 0.01f}, eye},
         {"a tenth of a pixel", {{0.317544f, -0.125093f, -2}, tilted(40), 0.001f, 0.001f}, eye},
+        {"between pixel centres", {{0.31f, -0.12f, -2}, tilted(40), 0.001f, 0.001f}, eye},
+        {"between pixel centres without prefilter",
+         {{0.31f, -0.12f, -2}, tilted(40), 0.001f, 0.001f},
+         eye,
+         160,
+         120,
+         false},
+        {"between pixel centres, parallel rays", {{0.303f, 0.104f, -2}, tilted(30), 0.002f, 0.001f}, parallel(eye)},
         {"a tenth of a pixel without prefilter",
          {{0.317544f, -0.125093f, -2}, tilted(40), 0.001f, 0.001f},
          eye,
@@ -68,7 +76,13 @@ std::vector<SplatCase> splat_cases() {
         {"wider than 255 pixels", {{0.1f, 0, -2}, tilted(35), 1.6f, 0.01f}, eye, 480, 360},
         {"parallel rays, facing", {{0.2f, 0.1f, -2}, {0, 0, 1}, 0.3f, 0.01f}, parallel(eye)},
         {"parallel rays, grazing", {{-0.3f, 0.1f, -2}, tilted(84, 40), 0.5f, 0.01f}, parallel(eye)},
-        {"parallel rays, edge-on", {{0.007f, 0.103f, -2}, {1, 0, 0}, 0.3f, 0.01f}, parallel(eye), 160, 120, true, false},
+        {"parallel rays, edge-on",
+         {{0.007f, 0.103f, -2}, {1, 0, 0}, 0.3f, 0.01f},
+         parallel(eye),
+         160,
+         120,
+         true,
+         false},
         {"parallel rays, crossing the near plane",
          {{0.1f, 0, -0.3f}, tilted(70), 0.8f, 0.01f},
          parallel(looking_down_z(0.1))},
@@ -121,7 +135,7 @@ TEST_CASE("a splat covers the pixels and has the depths of the ray-plane interse
                 for (std::uint32_t x = 0; x < splat.width; ++x) {
                     const SplatPixel truth = oracle.at(x, y);
                     const std::size_t i = std::size_t{y} * splat.width + x;
-                    const bool shown = truth.on_disk;
+                    const bool shown = truth.on_disk || truth.between;
                     covered += shown ? 1 : 0;
                     if (truth.certainty < kUndecided) continue;
                     if ((frame.coverage[i] != 0) != shown) ++wrong_cover;

@@ -26,6 +26,11 @@ struct Splat {
     vec4 splat_bounds;  // the same of the EWA footprint, disk included
 };
 
+// Whether the projected disk is less than a pixel wide and high.
+bool is_sub_pixel(Splat splat) {
+    return all(lessThan(splat.disk_bounds.zw - splat.disk_bounds.xy, vec2(1)));
+}
+
 // At grazing angles neighbouring disks, tilted against each other, disagree along the ray by more than the baked
 // epsilon, which bounds how far they are apart across the surface. Two disks tilted by TILT disagree by at most
 // epsilon * TILT perpendicular to the surface (point-and-edge, equation 8), along the ray by that over the cosine of
@@ -137,14 +142,20 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ep
     return true;
 }
 
+// A flag in the sign of a number that is not negative, which saves the fragments an input.
+float flagged(float value, bool flag) { return flag ? -max(value, 1e-30) : value; }
+
 struct SplatHit {
-    bool on_disk;      // the ray meets the disk
-    float depth;       // of the plane there
+    bool on_disk;      // the ray meets the disk, or the pixel holds the centre of a disk between pixel centres
+    float depth;       // of the plane there, or of that centre
     float distance2;   // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
     vec2 uv;           // where the ray meets the plane, in radii
 };
 
-SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset) {
+// A disk less than a pixel wide and high that its own pixel's ray misses lies between the pixel centres; it shows at the
+// pixel that holds its centre, else what is behind would bleed through. Wider disks that miss every centre are edge-on.
+SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset,
+                  bool sub_pixel) {
     const vec2 d = pixel - anchor;
     const float gd = dot(g, d);
     const float e = ORTHOGRAPHIC ? 1 : 1 + gd;
@@ -155,6 +166,11 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_
     hit.uv = e > 0 ? uv / e : vec2(0);
     hit.on_disk = e > 0 && distance2 <= e * e && hit.depth >= frame.near_plane;
     hit.distance2 = hit.on_disk ? distance2 / (e * e) : NOWHERE;
+    if (!hit.on_disk && sub_pixel && floor(pixel) == floor(anchor)) {
+        hit.on_disk = true;
+        hit.depth = anchor_depth;
+        hit.uv = vec2(0);
+    }
     return hit;
 }
 

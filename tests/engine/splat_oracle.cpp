@@ -18,6 +18,7 @@ std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& n) {
 }
 
 constexpr double kPrefilter = 0.3;  // variance, pixels^2; splat.glsl
+constexpr double kSpeck = 0.25;     // pixels; splat.glsl
 
 }  // namespace
 
@@ -45,7 +46,7 @@ SplatOracle::SplatOracle(const Disk& disk, const Camera& camera, std::uint32_t w
         low = glm::min(low, rim);
         high = glm::max(high, rim);
     }
-    sub_pixel_ = high.x - low.x < 1 && high.y - low.y < 1;
+    sub_pixel_ = high.x - low.x < kSpeck && high.y - low.y < kSpeck;
     // Central differences of the projection along the tangents.
     const double h = 1e-6 * -centre_.z;
     const glm::dvec2 along_s = (window(centre_ + h * s) - window(centre_ - h * s)) / (2 * h);

@@ -4,6 +4,7 @@
 #include "tests/reference/comparison.h"
 #include "tests/support/test_files.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 using namespace splice;
@@ -13,6 +14,8 @@ namespace {
 
 constexpr std::uint32_t kSize = 512;
 constexpr double kMayLose = 0.5;  // dB
+// Better than this, losses no longer count: the errors' root mean square is below one level of 8 bits.
+constexpr double kGoodEnough = 50;  // dB
 
 void check_truth_of(const std::string& name, const IndexedMesh& mesh) {
     Renderer renderer{RendererOptions{}};
@@ -29,9 +32,9 @@ void check_truth_of(const std::string& name, const IndexedMesh& mesh) {
     const Frame frame = renderer.render(hybrid_scene, settings);
     const Agreement ours = compare(frame, truth), theirs = compare(renderer.render(triangle_scene, settings), truth);
     INFO(name << ": hybrid " << ours.inside_db << " dB, triangles " << theirs.inside_db << " dB");
-    CHECK(ours.inside_db >= theirs.inside_db - kMayLose);
+    CHECK(ours.inside_db >= std::min(theirs.inside_db - kMayLose, kGoodEnough));
     CHECK(ours.iou > 0.97);
-    if (ours.inside_db < theirs.inside_db - kMayLose) {
+    if (ours.inside_db < std::min(theirs.inside_db - kMayLose, kGoodEnough)) {
         write_png(test::artefact(name + "-hybrid.png"), colours(frame));
         write_png(test::artefact(name + "-hybrid-error.png"), difference(colours(frame), truth.image));
     }

@@ -21,7 +21,7 @@ IndexedMesh repaired(SourceMesh source) {
 
 // Known misses (docs/benchmarks.md): where the surface is seen at a grazing angle, a ray may slip between two disks that
 // bend with it, or meet one that overhangs. About one pixel in 200,000.
-constexpr std::uint64_t kPinholes = 2;  // a view
+constexpr std::uint64_t kPinholes = 4;  // a view
 
 struct Look {
     std::uint32_t size = 256;    // pixels a side

@@ -1,7 +1,7 @@
-#include "preprocess/model_format/half.h"
 #include "preprocess/model_format/validate_model.h"
 
 #include "preprocess/model_format/error.h"
+#include "preprocess/model_format/half.h"
 
 #include <algorithm>
 #include <bit>

@@ -126,7 +126,8 @@ TEST_CASE("patch bounds hold triangles and disks") {
             const Vec3f s = normal.unitOrthogonal(), t = normal.cross(s);
             for (int k = 0; k < 16; ++k) {
                 const float angle = static_cast<float>(k) * 0.3926991f;
-                const Vec3f p = vec(surfel.position) + float_from_half(surfel.radius) * (std::cos(angle) * s + std::sin(angle) * t);
+                const Vec3f p =
+                    vec(surfel.position) + float_from_half(surfel.radius) * (std::cos(angle) * s + std::sin(angle) * t);
                 CHECK((p.array() >= low.array() - 1e-6f).all());
                 CHECK((p.array() <= high.array() + 1e-6f).all());
             }

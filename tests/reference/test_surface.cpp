@@ -19,8 +19,8 @@ IndexedMesh repaired(SourceMesh source) {
     return repair_mesh(std::move(source), RepairOptions{}, report, "shape");
 }
 
-// Known misses (docs/benchmarks.md): where the surface is seen at a grazing angle, a ray may slip between two disks that
-// bend with it, or meet one that overhangs. About one pixel in 200,000.
+// Known misses (docs/benchmarks.md): where the surface is seen at a grazing angle, a ray may slip between two disks
+// that bend with it, or meet one that overhangs. About one pixel in 200,000.
 constexpr std::uint64_t kPinholes = 4;  // a view
 
 struct Look {

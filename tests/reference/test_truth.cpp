@@ -4,8 +4,9 @@
 #include "tests/reference/comparison.h"
 #include "tests/support/test_files.h"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
+
+#include <algorithm>
 
 using namespace splice;
 using namespace splice::reference;

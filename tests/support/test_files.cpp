@@ -11,16 +11,21 @@ namespace fs = std::filesystem;
 
 std::optional<fs::path> model_file(const std::string& relative) {
     const char* from_environment = std::getenv("SPLICE_MODELS");
-    const fs::path folder = from_environment ? fs::path(from_environment) : fs::path(SPLICE_SOURCE_DIR) / "../shared/models";
+    const fs::path folder =
+        from_environment ? fs::path(from_environment) : fs::path(SPLICE_SOURCE_DIR) / "../shared/models";
     const fs::path file = folder / relative;
     if (fs::exists(file)) return file;
     std::cout << "skipped: " << relative << " is not in the model folder (set SPLICE_MODELS to have it tested)\n";
     return std::nullopt;
 }
 
-fs::path source_file(const std::string& relative) { return fs::path(SPLICE_SOURCE_DIR) / relative; }
+fs::path source_file(const std::string& relative) {
+    return fs::path(SPLICE_SOURCE_DIR) / relative;
+}
 
-fs::path program(const std::string& name) { return fs::path(SPLICE_BINARY_DIR) / "bin" / name; }
+fs::path program(const std::string& name) {
+    return fs::path(SPLICE_BINARY_DIR) / "bin" / name;
+}
 
 TemporaryFolder::TemporaryFolder() {
     std::string pattern = (fs::temp_directory_path() / "splice-test-XXXXXX").string();

@@ -38,7 +38,12 @@ constexpr std::uint64_t kTestSeed = 2005;
 struct SampledPatch {
     std::vector<SurfelSample> surfels;
     std::uint64_t candidates = 0;
+    double seconds = 0, seconds_prune = 0;  // of one thread
 };
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 struct Inputs {
     const IndexedMesh& mesh;
@@ -76,8 +81,14 @@ void add_colours(const Inputs& in, const CoverCells& cells, const std::vector<st
             area * in.colour.at(triangle, barycentric(in.mesh, triangle, cells.centre(i)), std::sqrt(area));
         weight[owner[i]] += area;
     }
-    for (std::size_t s = 0; s < sites.size(); ++s)
-        surfels[s].colour = SurfaceColour::encode(sum[s] / weight[s]);
+    for (std::size_t s = 0; s < sites.size(); ++s) {
+        if (weight[s] > 0) {
+            surfels[s].colour = SurfaceColour::encode(sum[s] / weight[s]);
+        } else {  // kept although its neighbours own its surface
+            const Vec3f b = barycentric(in.mesh, sites[s].triangle, sites[s].position);
+            surfels[s].colour = SurfaceColour::encode(in.colour.at(sites[s].triangle, b, surfels[s].radius));
+        }
+    }
 }
 
 void sort_by_morton_code(std::vector<SurfelSample>& surfels) {
@@ -101,6 +112,7 @@ void sort_by_morton_code(std::vector<SurfelSample>& surfels) {
 
 SampledPatch sample_patch(const Inputs& in, std::span<const std::uint32_t> triangles, std::uint32_t material) {
     if (triangles.empty()) return {};
+    const auto start = Clock::now();
     float h = 0;  // of the thesis; there the radius before shrinking is sqrt(3) h
     if (in.field == nullptr) {
         h = thesis_spacing(in.mesh, triangles, *in.options.thesis_c, in.options.h_min, in.options.h_max);
@@ -117,27 +129,24 @@ SampledPatch sample_patch(const Inputs& in, std::span<const std::uint32_t> trian
                                                        : thesis_sites(in.mesh, triangles, h, thesis_spacing_of_disks);
     SampledPatch result;
     result.candidates = sites.size();
+    const auto pruning = Clock::now();
     if (in.options.prune) {
         if (in.field == nullptr) prune_sites(cells, sites, kReach);
         relax_sites(in.mesh, cells, sites, in.field != nullptr ? kRelaxations : 0);
     }
-    const std::vector<std::uint32_t> owner = close_cover(in.mesh, cells, sites, kOverlap);
+    const std::vector<std::uint32_t> owner =
+        close_cover(in.mesh, cells, sites, kOverlap, in.options.prune ? 0.0f : kReach);
+    result.seconds_prune = seconds_since(pruning);
     result.surfels.reserve(sites.size());
-    for (const auto& site : sites) {
-        const float before_shrinking = kReach * site.spacing;
-        const float radius = in.options.prune ? site.radius : std::max(site.radius, before_shrinking);
-        result.surfels.push_back({site.position, site.normal, radius, before_shrinking, kWhite});
-    }
+    for (const auto& site : sites)
+        result.surfels.push_back({site.position, site.normal, site.radius, kReach * site.spacing, kWhite});
     const std::vector<ShadingBend> bends = fit_shading_bends(in.mesh, cells, sites);
     for (std::size_t s = 0; s < sites.size(); ++s)
         result.surfels[s].shading_bend = encode_shading_bend(bends[s], result.surfels[s].radius);
     add_colours(in, cells, owner, material, result.surfels, sites);
     sort_by_morton_code(result.surfels);
+    result.seconds = seconds_since(start);
     return result;
-}
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 }  // namespace
@@ -166,6 +175,7 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
     SurfelSet set;
     set.patch_begin.push_back(0);
     std::size_t total = 0;
+    double seconds = 0, seconds_prune = 0;
     for (const auto& patch : sampled)
         total += patch.surfels.size();
     set.surfels.reserve(total);
@@ -173,10 +183,15 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
         set.surfels.insert(set.surfels.end(), patch.surfels.begin(), patch.surfels.end());
         set.patch_begin.push_back(set.surfels.size());
         set.stats.candidates += patch.candidates;
+        seconds += patch.seconds;
+        seconds_prune += patch.seconds_prune;
         patch = {};
     }
     set.stats.surfels = set.surfels.size();
-    set.stats.seconds_sample = seconds_since(start);
+    // Patches run side by side: the stage's time is shared out as the threads' time was.
+    const double elapsed = seconds_since(start);
+    set.stats.seconds_prune = seconds > 0 ? elapsed * seconds_prune / seconds : 0;
+    set.stats.seconds_sample = elapsed - set.stats.seconds_prune;
     const Coverage coverage = measure_coverage(mesh, patches, set, kTestPoints, kTestSeed);
     set.stats.coverage_mean = coverage.mean;
     set.stats.uncovered = coverage.uncovered;

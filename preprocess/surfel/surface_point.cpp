@@ -21,36 +21,38 @@ Vec3f face_normal(const IndexedMesh& mesh, std::uint32_t triangle) {
 
 Vec3f barycentric(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& point) {
     const auto& v = mesh.triangles[triangle];
-    const Vec3f a = mesh.positions[v[0]], b = mesh.positions[v[1]], c = mesh.positions[v[2]];
-    const Vec3f ab = b - a, ac = c - a, ap = point - a;
-    const float d1 = ab.dot(ap), d2 = ac.dot(ap);
+    // In double: slivers leave no digits of a float.
+    const Vec3d a = mesh.positions[v[0]].cast<double>(), b = mesh.positions[v[1]].cast<double>(),
+                c = mesh.positions[v[2]].cast<double>(), p = point.cast<double>();
+    const Vec3d ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = ab.dot(ap), d2 = ac.dot(ap);
     if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-    const Vec3f bp = point - b;
-    const float d3 = ab.dot(bp), d4 = ac.dot(bp);
+    const Vec3d bp = p - b;
+    const double d3 = ab.dot(bp), d4 = ac.dot(bp);
     if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-    const float vc = d1 * d4 - d3 * d2;
+    const double vc = d1 * d4 - d3 * d2;
     if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        const float s = d1 > d3 ? d1 / (d1 - d3) : 0;
-        return {1 - s, s, 0};
+        const double s = d1 > d3 ? d1 / (d1 - d3) : 0;
+        return Vec3d(1 - s, s, 0).cast<float>();
     }
-    const Vec3f cp = point - c;
-    const float d5 = ab.dot(cp), d6 = ac.dot(cp);
+    const Vec3d cp = p - c;
+    const double d5 = ab.dot(cp), d6 = ac.dot(cp);
     if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-    const float vb = d5 * d2 - d1 * d6;
+    const double vb = d5 * d2 - d1 * d6;
     if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        const float s = d2 > d6 ? d2 / (d2 - d6) : 0;
-        return {1 - s, 0, s};
+        const double s = d2 > d6 ? d2 / (d2 - d6) : 0;
+        return Vec3d(1 - s, 0, s).cast<float>();
     }
-    const float va = d3 * d6 - d5 * d4;
+    const double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        const float length = (d4 - d3) + (d5 - d6);
-        const float s = length > 0 ? (d4 - d3) / length : 0;
-        return {0, 1 - s, s};
+        const double length = (d4 - d3) + (d5 - d6);
+        const double s = length > 0 ? (d4 - d3) / length : 0;
+        return Vec3d(0, 1 - s, s).cast<float>();
     }
-    const float sum = va + vb + vc;
+    const double sum = va + vb + vc;
     if (!(sum > 0)) return Vec3f::Constant(1.0f / 3);
-    const float s = vb / sum, t = vc / sum;
-    return {1 - s - t, s, t};
+    const double s = vb / sum, t = vc / sum;
+    return Vec3d(1 - s - t, s, t).cast<float>();
 }
 
 Vec3f point_at(const IndexedMesh& mesh, std::uint32_t triangle, const Vec3f& barycentric) {

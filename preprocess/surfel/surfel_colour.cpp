@@ -1,5 +1,7 @@
-// Mip pyramids after Williams 1983, averaged in linear light; IEC 61966-2-1 for the sRGB curve.
+// Mip pyramids after Williams 1983, averaged in linear light.
 #include "preprocess/surfel/surfel_colour.h"
+
+#include "preprocess/model_format/srgb.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,28 +11,10 @@
 namespace splice {
 namespace {
 
-float to_linear(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-float to_srgb(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-
-const std::array<float, 256>& linear_of_byte() {
-    static const std::array<float, 256> table = [] {
-        std::array<float, 256> values{};
-        for (std::size_t i = 0; i < 256; ++i)
-            values[i] = to_linear(static_cast<float>(i) / 255.0f);
-        return values;
-    }();
-    return table;
-}
-
 LinearColour decode(const std::uint8_t* rgba) {
-    const auto& linear = linear_of_byte();
     const float alpha = static_cast<float>(rgba[3]) / 255.0f;
-    return {linear[rgba[0]] * alpha, linear[rgba[1]] * alpha, linear[rgba[2]] * alpha, alpha};
+    return {linear_from_srgb(rgba[0]) * alpha, linear_from_srgb(rgba[1]) * alpha, linear_from_srgb(rgba[2]) * alpha,
+            alpha};
 }
 
 LinearColour decode(std::uint32_t rgba) {
@@ -147,16 +131,8 @@ LinearColour SurfaceColour::texture(std::uint32_t image, std::uint32_t triangle,
 }
 
 std::uint32_t SurfaceColour::encode(const LinearColour& colour) {
-    const float alpha = std::clamp(colour[3], 0.0f, 1.0f);
-    const auto byte = [](float value) {
-        return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
-    };
-    std::uint32_t rgba = byte(alpha) << 24;
-    for (int channel = 0; channel < 3; ++channel) {
-        const float straight = alpha > 0 ? colour[channel] / alpha : 0.0f;
-        rgba |= byte(to_srgb(std::clamp(straight, 0.0f, 1.0f))) << (8 * channel);
-    }
-    return rgba;
+    const float scale = colour[3] > 0 ? 1 / colour[3] : 0.0f;
+    return rgba8_from_linear({colour[0] * scale, colour[1] * scale, colour[2] * scale, colour[3]});
 }
 
 }  // namespace splice

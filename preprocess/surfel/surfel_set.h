@@ -34,13 +34,21 @@ struct SurfelSet {
 
 struct SamplingOptions {
     std::optional<double> thesis_c;  // set: the thesis's spacing h = (mean edge length of the patch) / c (3.3.2)
-                                     // unset: spacing adapts to curvature and colour detail
-    double h_min = 1.0 / 4096;       // spacing limits, unit-box units
+                                     // unset: spacing adapts to curvature and colour detail, see spacing_field.h
+    double h_min = 1.0 / 4096;       // spacing limits, unit-box units; adaptive spacing goes down to 1/512 by itself
     double h_max = 1.0 / 48;
-    bool prune = true;
+    bool prune = true;  // false: every candidate is kept where it was found, at the radius it has before shrinking
 };
 
-/// Hole-free by construction: each point of each surfel patch lies under a disk. Deterministic for any thread count.
+/// Hole-free by construction: each point of each surfel patch lies under a disk of its own patch. Deterministic for any
+/// thread count. Throws UsageError unless 0 < h_min <= h_max and thesis_c > 0.
+///
+/// Why no point is bare. Each triangle is tiled by convex cells. Each cell is given to one site whose disk may cover it
+/// (normals within 60 degrees of each other), a new site at the cell's own centre if there is none. A disk's radius is
+/// at least the distance from its centre to every corner of its cells, measured along its plane and, apart, across it.
+/// Projection to the plane is linear and a disk is convex, so with its corners the whole cell projects into the disk;
+/// likewise the whole cell is no farther off the plane than its farthest corner. disk_covers() in coverage.h is that
+/// condition, and measure_coverage() tests it at random points.
 SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const SamplingOptions& options,
                          const Progress& progress = {});
 

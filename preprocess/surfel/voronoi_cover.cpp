@@ -188,7 +188,7 @@ void prune_sites(const CoverCells& cells, std::vector<CoverSite>& sites, float r
 }
 
 std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells& cells, std::vector<CoverSite>& sites,
-                                       float overlap) {
+                                       float overlap, float reach) {
     Diagram diagram = diagram_of(cells, sites, kClaimDistance);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (diagram.owner[i] != kNoSite) continue;
@@ -215,8 +215,8 @@ std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells
     std::vector<std::uint32_t> renumbered(sites.size(), kNoSite);
     std::uint32_t kept = 0;
     for (std::size_t s = 0; s < sites.size(); ++s) {
-        if (sites[s].radius == 0) continue;
-        sites[s].radius = std::max(sites[s].radius, overlap * std::sqrt(area[s]));
+        if (sites[s].radius == 0 && !(reach > 0)) continue;
+        sites[s].radius = std::max({sites[s].radius, overlap * std::sqrt(area[s]), reach * sites[s].spacing});
         renumbered[s] = kept;
         sites[kept++] = sites[s];
     }

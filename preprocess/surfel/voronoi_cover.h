@@ -34,9 +34,9 @@ void relax_sites(const IndexedMesh& mesh, const CoverCells& cells, std::vector<C
 void prune_sites(const CoverCells& cells, std::vector<CoverSite>& sites, float reach);
 
 /// Gives every cell an owner, adding a site wherever no site may cover a cell, and sets every radius: what the owned
-/// cells need, and at least `overlap` times the square root of their area. Sites that own nothing are removed. Returns
-/// the owner of each cell.
+/// cells need, at least `overlap` times the square root of their area, at least `reach` times the spacing. Sites that
+/// own nothing are removed unless `reach` is above 0. Returns the owner of each cell.
 std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells& cells, std::vector<CoverSite>& sites,
-                                       float overlap);
+                                       float overlap, float reach);
 
 }  // namespace splice

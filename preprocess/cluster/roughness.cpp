@@ -30,8 +30,9 @@ std::size_t block_index(std::size_t x, std::size_t y, std::size_t z) {
 std::size_t direction_of(const Vec3f& n) {
     Eigen::Index axis = 0;
     n.cwiseAbs().maxCoeff(&axis);
-    const std::size_t side = static_cast<std::size_t>(axis) * 2 + (n[axis] < 0);
-    return side * 4 + (n[(axis + 1) % 3] < 0) * 2 + (n[(axis + 2) % 3] < 0);
+    const auto negative = [&](Eigen::Index i) { return n[i % 3] < 0 ? std::size_t{1} : std::size_t{0}; };
+    const std::size_t side = 2 * static_cast<std::size_t>(axis) + negative(axis);
+    return side * 4 + negative(axis + 1) * 2 + negative(axis + 2);
 }
 
 std::uint64_t cell_key(const Vec3f& p, const Vec3f& n) {

@@ -81,10 +81,12 @@ PatchSimplifier::CoarserLevels PatchSimplifier::choose_levels(const CoarserLevel
         return std::log(static_cast<double>(level.index_count));
     };
     const double reach = log_size(ladder.levels.back()) - log_finest;
+    const auto most = static_cast<int>(options.levels - 1);
     const double wanted = std::ceil(reach / std::log(static_cast<double>(options.reduction)) - 1e-6);
-    const double count = std::clamp(wanted, std::min(2.0, options.levels - 1.0), options.levels - 1.0);
+    const int count =
+        static_cast<int>(std::clamp(wanted, std::min(2.0, static_cast<double>(most)), static_cast<double>(most)));
     double previous = log_finest;
-    for (double i = 1; i <= count; ++i) {
+    for (int i = 1; i <= count; ++i) {
         const double target = log_finest + reach * i / count;
         const PatchLods::Level& level = *std::ranges::min_element(
             ladder.levels, {},

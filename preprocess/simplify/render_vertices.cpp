@@ -2,9 +2,6 @@
 #include "preprocess/model_format/srgb.h"
 #include "preprocess/simplify/simplify_patches.h"
 
-#include <cmath>
-#include <cstring>
-
 namespace splice {
 namespace {
 
@@ -29,7 +26,7 @@ format::Vertex corner_vertex(const IndexedMesh& mesh, std::size_t triangle, std:
 }
 
 bool same_attributes(const format::Vertex& a, const format::Vertex& b) {
-    return a.normal == b.normal && a.colour == b.colour && std::memcmp(a.uv, b.uv, sizeof(a.uv)) == 0;
+    return a.normal == b.normal && a.colour == b.colour && a.uv[0] == b.uv[0] && a.uv[1] == b.uv[1];
 }
 
 }  // namespace

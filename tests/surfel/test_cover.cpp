@@ -136,7 +136,8 @@ TEST_CASE("the coverage measure agrees with brute force", "[surfel]") {
     const IndexedMesh mesh = repaired(shapes::bumpy_sphere(2000));
     const PatchSet patches = one_patch(mesh);
     SamplingOptions options;
-    options.h_min = 1.0 / 40;
+    options.h_min = options.h_max = 1.0 / 40;
+    options.h_max = 1.0 / 20;
     SurfelSet set = sample_patches(mesh, patches, options);
     const Coverage covered = brute_force_coverage(mesh, set, 2000);
     CHECK(covered.uncovered == 0);

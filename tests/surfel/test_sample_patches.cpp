@@ -52,10 +52,11 @@ std::vector<std::uint32_t> all_triangles(const IndexedMesh& mesh) {
 }  // namespace
 
 TEST_CASE("surfels do not depend on the number of threads", "[surfel]") {
-    const IndexedMesh mesh = repaired(shapes::bumpy_sphere(6000));
+    const IndexedMesh mesh = repaired(shapes::bumpy_sphere(2500));
     const PatchSet patches = patches_by_cell(mesh, 4);
     for (const std::optional<double> c : {std::optional<double>{}, std::optional<double>{3.0}}) {
         SamplingOptions options;
+        options.h_min = 1.0 / 128;
         options.thesis_c = c;
         std::vector<SurfelSet> sets;
         for (const std::size_t threads : {1, 2, 4}) {

@@ -13,11 +13,7 @@ namespace {
 
 enum class Containment { kOutside, kPartly, kInside };
 
-// Cosine of the viewing angle beyond which shaders drop a back-facing surfel: HORIZON of frame.glsl, negated for the
-// angle between its normal and the direction away from the eye.
-constexpr double kHorizon = 0.25;
-
-// Pixels by which a splat may exceed its disk: the prefilter's sqrt(2), and rounding.
+// Pixels by which a splat may exceed its disk: sqrt(0.6) of the prefilter, up to 1 of a speck's pixel, and rounding.
 constexpr double kPrefilterReach = 1.5;
 
 template <typename T>
@@ -96,7 +92,7 @@ class Culler {
         }
         const double beta = std::acos(std::clamp(glm::dot(axis, away), -1.0, 1.0));
         constexpr double kRounding = 1e-3;  // radians; normals are quantised
-        return beta + spread + alpha + kRounding < std::acos(kHorizon);
+        return beta + spread + alpha + kRounding < std::acos(-kHorizon);
     }
 
     void visit_node(std::uint32_t index) {

@@ -13,6 +13,10 @@
 
 namespace splice {
 
+/// Cosine between a surfel's normal and the direction to the eye below which it is not drawn (one-sided) or turned to
+/// the eye (two-sided); HORIZON of frame.glsl.
+inline constexpr double kHorizon = -0.25;
+
 /// Consecutive indices or surfels of one model.
 struct DrawRange {
     std::uint64_t first = 0;  // into the model's index or surfel buffer

@@ -1,6 +1,8 @@
 // The structures that C++ and GLSL share are declared twice; here the compiled shaders are reflected and compared with
 // the C++ side, member by member.
 #include "engine/passes/shader_types.h"
+#include "engine/scene/draw_list.h"
+#include "preprocess/model_format/model_format.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
 #include "shaders/surfel_normalise_frag.h"
@@ -8,11 +10,15 @@
 #include "shaders/surfel_visibility_vert.h"
 #include "shaders/triangle_frag.h"
 #include "shaders/triangle_vert.h"
+#include "tests/support/test_files.h"
 
 #include <catch2/catch.hpp>
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <span>
 #include <string>
 #include <vector>
@@ -125,4 +131,20 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
                        {MEMBER(InstanceConstants, model_to_view), MEMBER(InstanceConstants, scale),
                         MEMBER(InstanceConstants, epsilon_scale), MEMBER(InstanceConstants, flags),
                         MEMBER(InstanceConstants, first_patch)}});
+}
+
+TEST_CASE("constants that C++ and GLSL share have the same values") {
+    const auto constant = [](const std::string& file, const std::string& name) {
+        std::ifstream stream(test::source_file("shaders/glsl/" + file));
+        const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+        std::smatch match;
+        CAPTURE(file, name);
+        REQUIRE(std::regex_search(text, match, std::regex(name + R"( = (?:vec[23]\()?(-?[0-9.]+))")));
+        return std::stod(match[1]);
+    };
+    CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
+    const double lean = constant("surfel_attribute.vert", "LARGEST_LEAN");
+    const double turn = constant("surfel_attribute.vert", "LARGEST_TURN");
+    const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));
+    CHECK(bend == std::vector<double>{lean, lean, turn, turn, turn});
 }

@@ -59,11 +59,13 @@ TEST_CASE("surfels smaller than the checks are black or white", "[surfel]") {
 }
 
 TEST_CASE("surfels larger than the checks have the mean colour in linear light", "[surfel]") {
+    // A disk's colour is the mean over its cells. Cells little larger than a check of 1/64 see more of one colour than
+    // of the other; many checks a cell leave rounding.
     const int grey = srgb_from_linear(0.5f);
     for (const std::uint32_t texels : {64u, 256u}) {
         for (const auto& surfel : sample(chequered_square(texels), 0.15).surfels) {
             for (int k = 0; k < 3; ++k)
-                CHECK(std::abs(channel(surfel.colour, k) - grey) <= 10);
+                CHECK(std::abs(channel(surfel.colour, k) - grey) <= (texels == 64 ? 10 : 2));
             CHECK(channel(surfel.colour, 3) == 255);
         }
     }
@@ -96,13 +98,13 @@ TEST_CASE("material, vertex colour and texture multiply", "[surfel]") {
 }
 
 TEST_CASE("transparent texels do not darken their neighbours", "[surfel]") {
-    IndexedMesh mesh = chequered_square(64);
+    IndexedMesh mesh = chequered_square(256);
     auto& rgba = mesh.images[0].rgba;
     for (std::size_t i = 0; i < rgba.size(); i += 4)
         rgba[i + 3] = rgba[i];  // black texels become transparent
     for (const auto& surfel : sample(mesh, 0.15).surfels) {
         CHECK(channel(surfel.colour, 0) >= 254);
-        CHECK(std::abs(channel(surfel.colour, 3) - 128) <= 10);
+        CHECK(std::abs(channel(surfel.colour, 3) - 128) <= 2);
     }
 }
 

@@ -127,10 +127,10 @@ Surface measure_surface(const IndexedMesh& mesh, const ClusterOptions& options) 
     Surface surface;
     FaceRoughness roughness;
     FaceAdjacency adjacency;
-    tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh); },
+    surface.faces = order_faces(mesh);
+    surface.settings = resolve(options, surface.faces);
+    tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh, surface.faces.face_of_slot); },
                          [&] {
-                             surface.faces = order_faces(mesh);
-                             surface.settings = resolve(options, surface.faces);
                              if (surface.settings.scored()) roughness = measure_roughness(mesh, surface.faces);
                          });
     surface.faces.links = link_faces(mesh, surface.faces, adjacency);

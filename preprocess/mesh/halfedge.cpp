@@ -36,52 +36,51 @@ class QuietOpenMesh {
     bool was_enabled_;
 };
 
-OpenMesh::VertexHandle handle(std::size_t index) {
-    return OpenMesh::VertexHandle(static_cast<int>(index));
-}
-
 struct OpenEdge {
     std::uint32_t vertex[2];  // ascending
     std::uint32_t face;
     std::pair<std::uint32_t, std::uint32_t> ends() const { return {vertex[0], vertex[1]}; }
 };
 
-/// The half-edge mesh and, because inserting may duplicate vertices, where its vertices come from. Face ids agree.
+/// The half-edge mesh in an order of its own: face i is face order[i] of the source, vertex i is vertex_source[i].
 struct Insertion {
     HalfedgeMesh halfedges;
-    std::vector<std::uint32_t> duplicate_of;  // source vertex of vertex positions.size() + i
+    std::vector<std::uint32_t> vertex_source;
     std::uint64_t detached_faces = 0;
 };
 
-Insertion insert_faces(const IndexedMesh& mesh) {
+Insertion insert_faces(const IndexedMesh& mesh, std::span<const std::uint32_t> order) {
     const QuietOpenMesh quiet;
     Insertion result;
     HalfedgeMesh& halfedges = result.halfedges;
     halfedges.reserve(mesh.positions.size(), mesh.triangles.size() * 3 / 2 + 3, mesh.triangles.size());
-    halfedges.resize(mesh.positions.size(), 0, 0);
-    for (const Triangle& t : mesh.triangles) {
-        if (halfedges.add_face(handle(t[0]), handle(t[1]), handle(t[2])).is_valid()) continue;
-        ++result.detached_faces;
-        OpenMesh::VertexHandle own[3];
-        for (int k = 0; k < 3; ++k) {
-            own[k] = halfedges.new_vertex();
-            result.duplicate_of.push_back(t[k]);
+    const auto new_vertex = [&](std::uint32_t source) {
+        result.vertex_source.push_back(source);
+        return halfedges.new_vertex();
+    };
+    std::vector<OpenMesh::VertexHandle> vertex_of(mesh.positions.size());
+    for (const std::uint32_t f : order) {
+        const Triangle& t = mesh.triangles[f];
+        for (const std::uint32_t v : t) {
+            if (!vertex_of[v].is_valid()) vertex_of[v] = new_vertex(v);
         }
-        halfedges.add_face(own[0], own[1], own[2]);
+        if (halfedges.add_face(vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]).is_valid()) continue;
+        ++result.detached_faces;
+        const auto a = new_vertex(t[0]), b = new_vertex(t[1]), c = new_vertex(t[2]);
+        halfedges.add_face(a, b, c);
     }
     return result;
 }
 
 }  // namespace
 
-FaceAdjacency find_face_adjacency(const IndexedMesh& mesh) {
-    const Insertion inserted = insert_faces(mesh);
+FaceAdjacency find_face_adjacency(const IndexedMesh& mesh, std::span<const std::uint32_t> order) {
+    const Insertion inserted = insert_faces(mesh, order);
     const HalfedgeMesh& halfedges = inserted.halfedges;
     const auto source_vertex = [&](OpenMesh::VertexHandle v) {
-        const auto index = static_cast<std::size_t>(v.idx());
-        return index < mesh.positions.size() ? static_cast<std::uint32_t>(index)
-                                             : inserted.duplicate_of[index - mesh.positions.size()];
+        return inserted.vertex_source[static_cast<std::size_t>(v.idx())];
     };
+    const auto source_face = [&](OpenMesh::FaceHandle f) { return order[static_cast<std::size_t>(f.idx())]; };
 
     FaceAdjacency result;
     result.detached_faces = inserted.detached_faces;
@@ -93,11 +92,11 @@ FaceAdjacency find_face_adjacency(const IndexedMesh& mesh) {
         std::uint32_t v1 = source_vertex(halfedges.to_vertex_handle(h));
         if (v0 > v1) std::swap(v0, v1);
         const auto f0 = halfedges.face_handle(h), f1 = halfedges.face_handle(halfedges.opposite_halfedge_handle(h));
-        const auto id0 = static_cast<std::uint32_t>(f0.idx()), id1 = static_cast<std::uint32_t>(f1.idx());
         if (f0.is_valid() && f1.is_valid()) {
-            result.pairs.push_back({{std::min(id0, id1), std::max(id0, id1)}, {v0, v1}});
+            const std::uint32_t a = source_face(f0), b = source_face(f1);
+            result.pairs.push_back({{std::min(a, b), std::max(a, b)}, {v0, v1}});
         } else {
-            open.push_back({{v0, v1}, f0.is_valid() ? id0 : id1});
+            open.push_back({{v0, v1}, source_face(f0.is_valid() ? f0 : f1)});
         }
     }
 

@@ -5,6 +5,7 @@
 #include "preprocess/mesh/indexed_mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace splice {
@@ -24,6 +25,9 @@ struct FaceAdjacency {
 /// half-edge structure can hold (non-manifold edges, Moebius seams, several fans at a vertex) are inserted with
 /// duplicated vertices; edges which that tears apart are joined again if they have exactly two faces. `mesh` needs the
 /// invariants of IndexedMesh. O(faces), about 3 M faces a second.
-FaceAdjacency find_face_adjacency(const IndexedMesh& mesh);
+///
+/// Faces are inserted in `order`, a permutation of them; an order that keeps neighbours together is up to twice as
+/// fast.
+FaceAdjacency find_face_adjacency(const IndexedMesh& mesh, std::span<const std::uint32_t> order);
 
 }  // namespace splice

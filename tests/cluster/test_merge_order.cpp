@@ -17,7 +17,7 @@ namespace {
 
 FaceGraph graph_of(const IndexedMesh& mesh) {
     FaceGraph faces = order_faces(mesh);
-    faces.links = link_faces(mesh, faces, find_face_adjacency(mesh));
+    faces.links = link_faces(mesh, faces, find_face_adjacency(mesh, faces.face_of_slot));
     return faces;
 }
 

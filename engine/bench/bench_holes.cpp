@@ -18,7 +18,6 @@ void add_counts(SurfaceReport& sum, const SurfaceReport& one) {
     sum.lost += one.lost;
     sum.grown += one.grown;
     sum.in_front += one.in_front;
-    sum.detached += one.detached;
     sum.worst_behind = std::max(sum.worst_behind, one.worst_behind);
     sum.worst_in_front = std::max(sum.worst_in_front, one.worst_in_front);
 }
@@ -29,7 +28,6 @@ json to_json(const SurfaceReport& report, double iou) {
             {"lost", report.lost},
             {"grown", report.grown},
             {"in_front", report.in_front},
-            {"detached", report.detached},
             {"worst_behind", report.worst_behind},
             {"iou", iou},
             {"worst_in_front", report.worst_in_front}};
@@ -40,7 +38,7 @@ json to_json(const SurfaceReport& report, double iou) {
 json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& options) {
     Renderer renderer({options.device, false});
     json report = {{"device", renderer.device_name()}, {"clean", true}, {"models", json::array()}};
-    Table table({"pixels", "views", "inside", "holes", "lost", "grown", "in front", "detached", "worst behind",
+    Table table({"pixels", "views", "inside", "holes", "lost", "grown", "in front", "worst behind",
                  "lowest IoU", "faults in"});
     for (const BenchModel& bench_model : models) {
         show_progress("bake " + bench_model.name);
@@ -77,7 +75,7 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
         if (!sum.clean()) report["clean"] = false;
         table.add({bench_model.name, fmt::format("{}", views.size()), fmt::format("{}", sum.inside),
                    fmt::format("{}", sum.holes), fmt::format("{}", sum.lost), fmt::format("{}", sum.grown),
-                   fmt::format("{}", sum.in_front), fmt::format("{}", sum.detached),
+                   fmt::format("{}", sum.in_front),
                    fmt::format("{:.2g}", sum.worst_behind / mesh.source_scale), fmt::format("{:.4f}", lowest_iou),
                    faulty});
         report["models"].push_back({{"model", bench_model.name}, {"sum", to_json(sum, lowest_iou)}, {"views", views}});

@@ -16,7 +16,8 @@ void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads) {
         {0, sizeof(format::Surfel), quads ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX}};
     options.vertex_attributes = {
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(format::Surfel, position)},
-        {1, 0, VK_FORMAT_R16G16_SFLOAT, offsetof(format::Surfel, radius)},
+        {1, 0, VK_FORMAT_R16_SFLOAT, offsetof(format::Surfel, radius)},
+        {7, 0, VK_FORMAT_R16_UINT, offsetof(format::Surfel, extent)},
         {2, 0, VK_FORMAT_R16G16_SNORM, offsetof(format::Surfel, normal)},
         {3, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(format::Surfel, colour)},
         {4, 0, VK_FORMAT_R8_SNORM, offsetof(format::Surfel, shading_bend)},

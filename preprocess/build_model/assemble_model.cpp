@@ -5,6 +5,7 @@
 #include "preprocess/build_model/texture_mips.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/surfel_extent.h"
 
 #include <tbb/parallel_for.h>
 
@@ -92,6 +93,14 @@ Vec3f decoded_normal(std::uint32_t bits) {
 
 float stored_length(float length) {
     return float_from_half(half_at_least(length));
+}
+
+std::uint16_t extent_of(const SurfelSample& surfel) {
+    return encode_extent({surfel.above, surfel.below, surfel.epsilon}, stored_length(surfel.radius));
+}
+
+SurfelExtent stored_extent(const SurfelSample& surfel) {
+    return decode_extent(extent_of(surfel), stored_length(surfel.radius));
 }
 
 // The extent of a disk along an axis is r sqrt(1 - n^2); widened by its rounding.
@@ -207,7 +216,7 @@ void Assembler::add_patches() {
         patch.area = cluster.area;
         for (const SurfelSample& surfel : surfels_of(old)) {
             patch.max_surfel_radius = std::max(patch.max_surfel_radius, stored_length(surfel.radius));
-            patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, stored_length(surfel.epsilon));
+            patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, stored_extent(surfel).epsilon);
         }
         patch.roughness = cluster.roughness;
         const bool is_leaf = cluster.merge_root < leaf_of_triangle_.size();
@@ -227,7 +236,7 @@ void Assembler::add_surfels() {
             model_.surfels.push_back(
                 {{position.x(), position.y(), position.z()},
                  half_at_least(sample.radius),
-                 half_at_least(sample.epsilon),
+                 extent_of(sample),
                  encode_octahedral(sample.normal.x(), sample.normal.y(), sample.normal.z()),
                  {static_cast<std::uint8_t>(sample.colour), static_cast<std::uint8_t>(sample.colour >> 8),
                   static_cast<std::uint8_t>(sample.colour >> 16)},

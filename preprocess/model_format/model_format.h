@@ -83,7 +83,7 @@ static_assert(sizeof(Vertex) == 28 && offsetof(Vertex, uv) == 20);
 struct Surfel {
     float position[3];
     std::uint16_t radius;    // half (half.h): baked disk radius; the reconstruction covariance is radius^2 / 2
-    std::uint16_t epsilon;   // half: depth offset before the user's scale: the sample spacing before radii were shrunk
+    std::uint16_t extent;    // surfel_extent.h: epsilon, and how far the surface it stands for leaves its plane
     std::uint32_t normal;    // octahedral; of the disk's plane
     std::uint8_t colour[3];  // sRGB; texture included, filtered over the footprint
     // The shading normal over the disk, to first order (Botsch, Spernat and Kobbelt 2004): at (u, v), in radii along

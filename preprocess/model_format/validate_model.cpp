@@ -2,6 +2,7 @@
 
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/half.h"
+#include "preprocess/model_format/surfel_extent.h"
 
 #include <algorithm>
 #include <bit>
@@ -202,10 +203,10 @@ class Validator {
             const Patch& patch = view_.patches[p];
             for (const Surfel& surfel : view_.surfels.subspan(patch.first_surfel, patch.surfel_count)) {
                 require(all_finite(surfel.position), surfel, "surfel position is not finite");
-                const float radius = float_from_half(surfel.radius), epsilon = float_from_half(surfel.epsilon);
+                const float radius = float_from_half(surfel.radius), epsilon = decode_extent(surfel.extent, radius).epsilon;
                 require(radius >= 0 && radius <= patch.max_surfel_radius, surfel.radius,
                         "surfel radius is not between 0 and the patch's largest");
-                require(epsilon >= 0 && epsilon <= patch.max_surfel_epsilon, surfel.epsilon,
+                require(epsilon >= 0 && epsilon <= patch.max_surfel_epsilon, surfel.extent,
                         "surfel epsilon is not between 0 and the patch's largest");
                 require(surfel.patch == p, surfel.patch, "surfel of patch ", p, " names patch ", surfel.patch);
             }

@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 constexpr float kReach = 0.8f;  // radius of a disk before shrinking, in spacings: 2.3 disks a point on a hexagonal grid
 constexpr float kOverlap = 0.86f;  // the same radius in units of the square root of a disk's share of the surface
 constexpr float kCellSize = 0.2f;  // of the spacing: a quarter of that radius
-constexpr int kRelaxations = 3;
+constexpr int kRelaxations = 8;
 constexpr std::size_t kTestPoints = 50000;
 constexpr std::uint64_t kTestSeed = 2005;
 
@@ -139,7 +139,8 @@ SampledPatch sample_patch(const Inputs& in, std::span<const std::uint32_t> trian
     result.seconds_prune = seconds_since(pruning);
     result.surfels.reserve(sites.size());
     for (const auto& site : sites)
-        result.surfels.push_back({site.position, site.normal, site.radius, kReach * site.spacing, kWhite});
+        result.surfels.push_back(
+            {site.position, site.normal, site.radius, site.above, site.below, kReach * site.spacing, kWhite});
     const std::vector<ShadingBend> bends = fit_shading_bends(in.mesh, cells, sites);
     for (std::size_t s = 0; s < sites.size(); ++s)
         result.surfels[s].shading_bend = encode_shading_bend(bends[s], result.surfels[s].radius);

@@ -13,6 +13,7 @@ struct SurfelSample {
     Vec3f position;
     Vec3f normal;                               // unit, of the disk's plane
     float radius;                               // unit-box units
+    float above, below;                         // how far the surface it stands for leaves its plane; at most radius
     float epsilon;                              // see format::Surfel
     std::uint32_t colour;                       // sRGB RGBA8, texture and material included, filtered over the disk
     std::array<std::int8_t, 5> shading_bend{};  // see format::Surfel

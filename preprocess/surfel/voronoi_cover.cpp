@@ -199,7 +199,7 @@ std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells
     }
     std::vector<float> area(sites.size(), 0.0f);
     for (auto& site : sites)
-        site.radius = 0;
+        site.radius = site.above = site.below = 0;
     for (const auto& chunk : cells.chunks) {
         CoverCells::for_each_cell(chunk, [&](std::uint32_t cell, const std::array<Vec3f, 4>& corners) {
             auto& site = sites[diagram.owner[cell]];
@@ -209,6 +209,8 @@ std::vector<std::uint32_t> close_cover(const IndexedMesh& mesh, const CoverCells
                 const float plane = d.dot(site.normal);
                 const float tangential = std::sqrt(std::max(0.0f, d.squaredNorm() - plane * plane));
                 site.radius = std::max(site.radius, std::max(tangential, std::abs(plane)) + kRoundingSlack);
+                site.above = std::max(site.above, plane - kRoundingSlack);
+                site.below = std::max(site.below, -plane - kRoundingSlack);
             }
         });
     }

@@ -15,6 +15,7 @@ struct CoverSite {
     float spacing;           // wanted distance to the neighbours
     std::uint32_t triangle;  // of the mesh, holds the position
     float radius;            // of the disk
+    float above = 0, below = 0;  // how far the owned cells leave the disk's plane; at most the radius
 };
 
 inline constexpr std::uint32_t kNoSite = 0xffffffffu;

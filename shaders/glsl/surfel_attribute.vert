@@ -16,6 +16,8 @@ layout(location = 3) flat out vec4 out_colour_depth;
 layout(location = 4) flat out vec3 out_rise_offset;
 layout(location = 5) flat out vec3 out_colour_u;  // change a radius
 layout(location = 6) flat out vec3 out_colour_v;
+layout(location = 7) flat out vec3 out_skew;
+layout(location = 8) flat out vec2 out_swell;
 
 // format::kLargestBend
 const vec2 LARGEST_LEAN = vec2(1);
@@ -44,5 +46,7 @@ void main() {
     out_plane_map = splat.plane_map;
     out_conic_weight = vec4(splat.conic, splat.weight);
     out_colour_depth = vec4(colour, splat.anchor_depth);
+    out_skew = splat.skew;
+    out_swell = splat.swell;
     out_rise_offset = vec3(flagged(splat.rise, is_sub_pixel(splat)), splat.plane_offset);
 }

@@ -9,6 +9,8 @@
 layout(location = 0) flat out vec4 out_anchor_g;
 layout(location = 1) flat out vec4 out_plane_map;
 layout(location = 2) flat out vec4 out_depth_epsilon_offset;
+layout(location = 3) flat out vec3 out_skew;
+layout(location = 4) flat out vec2 out_swell;
 
 void main() {
     Splat splat;
@@ -19,4 +21,6 @@ void main() {
     out_plane_map = splat.plane_map;
     out_depth_epsilon_offset =
         vec4(splat.anchor_depth, flagged(splat.epsilon, is_sub_pixel(splat)), splat.plane_offset);
+    out_skew = splat.skew;
+    out_swell = splat.swell;
 }

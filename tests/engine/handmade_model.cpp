@@ -2,6 +2,7 @@
 
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/surfel_extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,12 +54,13 @@ HandmadeModel& HandmadeModel::add_surfels(const std::vector<Disk>& disks) {
         surfel.normal = encode_octahedral(disk.normal.x, disk.normal.y, disk.normal.z);
         for (int channel = 0; channel < 3; ++channel)
             surfel.colour[channel] = static_cast<std::uint8_t>(disk.colour >> 8 * channel);
-        surfel.epsilon = half_at_least(disk.epsilon);
+        surfel.extent = encode_extent({disk.above, disk.below, disk.epsilon}, float_from_half(surfel.radius));
         surfel.patch = static_cast<std::uint32_t>(model_.patches.size());
         model_.surfels.push_back(surfel);
         extend(patch, disk.centre, float_from_half(surfel.radius));
         patch.max_surfel_radius = std::max(patch.max_surfel_radius, float_from_half(surfel.radius));
-        patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, float_from_half(surfel.epsilon));
+        patch.max_surfel_epsilon =
+            std::max(patch.max_surfel_epsilon, decode_extent(surfel.extent, float_from_half(surfel.radius)).epsilon);
     }
     model_.patches.push_back(patch);
     return *this;

@@ -16,6 +16,7 @@ struct Disk {
     float radius;
     float epsilon;
     std::uint32_t colour = 0xffffffff;  // sRGB RGBA8, R in the lowest byte
+    float above = 0, below = 0;         // see preprocess/model_format/surfel_extent.h
 };
 
 struct Corner {

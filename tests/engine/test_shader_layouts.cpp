@@ -3,6 +3,7 @@
 #include "engine/passes/shader_types.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/surfel_extent.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
 #include "shaders/surfel_normalise_frag.h"
@@ -134,15 +135,21 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
 }
 
 TEST_CASE("constants that C++ and GLSL share have the same values") {
-    const auto constant = [](const std::string& file, const std::string& name) {
+    const auto constant = [](const std::string& file, const std::string& name, int component = 0) {
         std::ifstream stream(test::source_file("shaders/glsl/" + file));
         const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
         std::smatch match;
         CAPTURE(file, name);
-        REQUIRE(std::regex_search(text, match, std::regex(name + R"( = (?:vec[23]\()?(-?[0-9.]+))")));
+        REQUIRE(std::regex_search(text, match,
+                                  std::regex(name + R"( = (?:vec[23]\()?)" +
+                                             (component == 0 ? "" : "[0-9.]+, [0-9.]+, ") + R"((-?[0-9.]+))")));
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
+    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_POWERS")) == kSwellStep);
+    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
+    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_ONES")) == kSwellOne);
+    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
     const double lean = constant("surfel_attribute.vert", "LARGEST_LEAN");
     const double turn = constant("surfel_attribute.vert", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));

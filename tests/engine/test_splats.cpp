@@ -158,13 +158,14 @@ TEST_CASE("overlapping splats blend by their EWA weights") {
             CAPTURE(splat.name, quads);
             Disk front = splat.disk;
             front.colour = kRed;
-            front.epsilon = 50;
+            front.epsilon = 0.5f;  // times the scale below: everything blends
             // Behind it a disk that covers the screen: the rim of the front one's footprint shows on it.
-            const Disk back{{0, 0, -6}, {0, 0, 1}, 12, 50, kGreen};
+            const Disk back{{0, 0, -6}, {0, 0, 1}, 12, 0.5f, kGreen};
             HandmadeModel model(true);
             model.add_surfels({front}).add_surfels({back});
             CaptureSettings settings = settings_of(splat);
             settings.force_quads = quads;
+            settings.epsilon_scale = 100;
             const Frame frame = renderer.render(unlit(renderer, model), settings);
             const SplatOracle front_oracle(front, splat.camera, splat.width, splat.height, splat.prefilter);
             const SplatOracle back_oracle(back, splat.camera, splat.width, splat.height, splat.prefilter);

@@ -2,6 +2,7 @@
 
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/surfel_extent.h"
 
 namespace splice::test {
 namespace {
@@ -41,9 +42,20 @@ Model small_model() {
             model.vertices.push_back({{x, y, 0}, kUp, 0xff8040ffu, {x, y}});
     model.indices = {0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5, 4, 6, 5, 5, 6, 7, /* coarser: */ 0, 4, 1, 1, 4, 5};
     model.lods = {{0, 12, 0}, {18, 6, 0.125f}, {12, 6, 0}};
-    model.surfels = {
-        {{0.6f, 0.5f, 0}, half_at_least(0.25f), half_at_least(0.29f), kUp, {255, 255, 255}, {0, 0, 0, 0, 0}, 1},
-        {{0.9f, 0.5f, 0}, half_at_least(0.2f), half_at_least(0.25f), kUp, {0, 255, 0}, {127, -5, 3, 0, 1}, 1}};
+    model.surfels = {{{0.6f, 0.5f, 0},
+                      half_at_least(0.25f),
+                      encode_extent({0, 0, 0.29f}, 0.25f),
+                      kUp,
+                      {255, 255, 255},
+                      {0, 0, 0, 0, 0},
+                      1},
+                     {{0.9f, 0.5f, 0},
+                      half_at_least(0.2f),
+                      encode_extent({0.01f, 0.001f, 0.25f}, 0.2f),
+                      kUp,
+                      {0, 255, 0},
+                      {127, -5, 3, 0, 1},
+                      1}};
 
     Patch triangles = patch_over(0, 0.5f);
     triangles.lod_count = 2;

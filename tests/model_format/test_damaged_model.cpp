@@ -150,7 +150,7 @@ TEST_CASE("surfels that leave their patch's limits are refused") {
     CHECK_THAT(refusal_after([](Model& m) { m.surfels[0].position[0] = kNan; }), Contains("position"));
     CHECK_THAT(refusal_after([](Model& m) { m.surfels[0].radius = 0xbc00; }), Contains("radius"));
     CHECK_THAT(refusal_after([](Model& m) { m.surfels[0].radius = 0x7e00; }), Contains("radius"));
-    CHECK_THAT(refusal_after([](Model& m) { m.surfels[1].epsilon = 0x7c00; }), Contains("epsilon"));
+    CHECK_THAT(refusal_after([](Model& m) { m.surfels[1].extent = 63u << 10; }), Contains("epsilon"));
     CHECK_THAT(refusal_after([](Model& m) { m.surfels[1].patch = 0; }), Contains("names patch 0"));
     CHECK_THAT(refusal_after([](Model& m) { m.surfels.pop_back(); }), Contains("surfels"));
     CHECK_THAT(refusal_after([](Model& m) { m.surfels.push_back(m.surfels[0]); }), Contains("surfels"));

@@ -110,7 +110,8 @@ SurfaceCheck check_frame(Renderer& renderer, const Scene& scene, const ModelView
     const DepthImage truth = oracle.depth(view);
     const Tolerance tolerance = surfel_tolerance(model, view, truth, static_cast<float>(settings.epsilon_scale));
     SurfaceCheck check;
-    check.report = check_surface(shown, truth, tolerance, &check.marked);
+    check.report = check_surface(shown, truth, tolerance, &check.marked,
+                                 [&](std::uint32_t x, std::uint32_t y) { return oracle.nearest_in_pixel(view, x, y); });
     check.iou = silhouette_iou(covered(shown), covered(truth));
     return check;
 }

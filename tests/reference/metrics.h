@@ -4,6 +4,7 @@
 #include "tests/reference/images.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace splice::reference {
 
@@ -32,13 +33,10 @@ struct SurfaceReport {
     std::uint64_t lost = 0;      // reference pixels without cover within 1 px
     std::uint64_t grown = 0;     // covered pixels farther than allowed from any reference pixel
     std::uint64_t in_front = 0;  // covered pixels nearer than the nearest of the 3x3, beyond the tolerance
-    std::uint64_t detached = 0;  // of those: with nothing that near within the reach that growth is allowed
-    double worst_behind = 0;  // largest excess over the tolerated depth among the holes with a surface, unit-box units
-    double worst_in_front = 0;  // the same for detached pixels
+    double worst_behind = 0;     // largest excess over the tolerated depth among the holes with a surface
+    double worst_in_front = 0;   // the same for what is in front; both in unit-box units
 
-    /// Overhangs (in_front without detached) aside: a flat disk that ends at an outline in front of another part of the
-    /// model covers a little of that part, as it may cover a little background.
-    bool clean() const { return holes + lost + grown + detached == 0; }
+    bool clean() const { return holes + lost + grown + in_front == 0; }
 };
 
 /// Per-pixel tolerances of the check; see surfel_tolerance.h for how surfels determine them.
@@ -46,6 +44,10 @@ struct Tolerance {
     Raster<float> depth;      // 2 epsilon + spacing of the surfels that may show at a pixel, unit-box units
     Raster<float> radius_px;  // radius of the largest of their disks on screen
 };
+
+/// The nearest surface anywhere in a pixel, as a distance along the view direction, or kNothing. One ray a pixel steps
+/// over slivers; before a pixel counts as grown or in front, its neighbourhood is looked at closer.
+using NearestInPixel = std::function<float(std::uint32_t x, std::uint32_t y)>;
 
 /// `frame` and `reference` hold distances along the view direction. The rules:
 ///  - hole: a pixel 2 px inside the reference that shows nothing, or a surface farther than the farthest reference
@@ -55,10 +57,10 @@ struct Tolerance {
 ///  - growth: a covered pixel with no reference pixel within max(2, 1 + disk radius) px;
 ///  - in front: a covered pixel whose depth is less than the nearest of the 3x3 minus the tolerance (where the 3x3
 ///  holds
-///    any reference pixel); detached: even less than the nearest within max(2, 1 + disk radius) px.
-/// `marked`, if given, receives a picture: grey reference, red holes, blue lost, yellow grown, dark
-/// magenta in front, magenta detached.
+///    any reference pixel).
+/// `marked`, if given, receives a picture: grey reference, red holes, blue lost, yellow grown, magenta in front.
+/// `closer` sees what the reference's rays miss; without it the reference alone decides.
 SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference, const Tolerance& tolerance,
-                            ColourImage* marked = nullptr);
+                            ColourImage* marked = nullptr, const NearestInPixel& closer = {});
 
 }  // namespace splice::reference

@@ -115,6 +115,16 @@ struct ReferenceScene::Impl {
         return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kNothing : hit.ray.tfar;
     }
 
+    /// At a window position: the distance along the view direction, or kNothing. `to_mesh`: from eye to mesh space.
+    float depth_through(const ReferenceView& view, const glm::dmat4& to_mesh, double x, double y) const {
+        const Ray eye = pixel_ray(view, x, y);
+        const Ray ray{glm::dvec3(to_mesh * glm::dvec4(eye.origin, 1)),
+                      glm::dvec3(to_mesh * glm::dvec4(eye.direction, 0))};
+        RTCRayHit record;
+        const float t = cast(ray, record);
+        return t == kNothing ? kNothing : static_cast<float>(t * -eye.direction.z);
+    }
+
     SurfacePoint point(const RTCHit& hit, const glm::vec3& position, const glm::vec3& to_eye) const {
         const std::size_t t = hit.primID;
         const glm::vec3 weight(1 - hit.u - hit.v, hit.u, hit.v);
@@ -158,15 +168,21 @@ DepthImage ReferenceScene::depth(const ReferenceView& view) const {
     const glm::dmat4 to_mesh = glm::inverse(view.view);
     for_each_row(view.height, [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < view.width; ++x) {
-            const Ray eye = pixel_ray(view, x + 0.5, y + 0.5);
-            const Ray ray{glm::dvec3(to_mesh * glm::dvec4(eye.origin, 1)),
-                          glm::dvec3(to_mesh * glm::dvec4(eye.direction, 0))};
-            RTCRayHit record;
-            const float t = impl_->cast(ray, record);
-            if (t != kNothing) image.at(x, y) = static_cast<float>(t * -eye.direction.z);
+            image.at(x, y) = impl_->depth_through(view, to_mesh, x + 0.5, y + 0.5);
         }
     });
     return image;
+}
+
+float ReferenceScene::nearest_in_pixel(const ReferenceView& view, std::uint32_t x, std::uint32_t y,
+                                       std::uint32_t samples_per_side) const {
+    const glm::dmat4 to_mesh = glm::inverse(view.view);
+    float nearest = kNothing;
+    for (std::uint32_t j = 0; j < samples_per_side; ++j)
+        for (std::uint32_t i = 0; i < samples_per_side; ++i)
+            nearest = std::min(nearest, impl_->depth_through(view, to_mesh, x + (i + 0.5) / samples_per_side,
+                                                             y + (j + 0.5) / samples_per_side));
+    return nearest;
 }
 
 ColourImage ReferenceScene::shaded(const ReferenceView& view, const Shader& shader, const glm::vec3& background,

@@ -1,6 +1,7 @@
 #include "tests/reference/surfel_tolerance.h"
 
 #include "preprocess/model_format/half.h"
+#include "preprocess/model_format/surfel_extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,8 @@ Tolerance surfel_tolerance(const ModelView& model, const ReferenceView& view, co
         const double radius_px = radius * focal_px / nearest;
         const double w = view.perspective() ? nearest : clip.w;
         const double cx = (clip.x / w + 1) * 0.5 * view.width, cy = (clip.y / w + 1) * 0.5 * view.height;
-        const double depth_tolerance = (2 * epsilon_scale + 1) * float_from_half(surfel.epsilon) * unit;
+        const double depth_tolerance =
+            (2 * epsilon_scale + 1) * decode_extent(surfel.extent, float_from_half(surfel.radius)).epsilon * unit;
         const double reach = radius_px + 1;
         for (std::int64_t y = std::max<std::int64_t>(0, clamp_pixel(cy - reach, view.height));
              y <= std::min<std::int64_t>(view.height - 1, clamp_pixel(cy + reach, view.height)); ++y)

@@ -83,6 +83,38 @@ void check_invariants(const IndexedMesh& mesh, const PatchSet& patches, const Su
     CHECK(on_surface);
 }
 
+// Whether every one of `count` random points lies in the solid of a disk of its own patch: within the disk's radius,
+// and no farther above or below its plane than the disk says. A ray that meets the surface there meets that solid.
+bool solids_hold_surface(const IndexedMesh& mesh, const PatchSet& patches, const SurfelSet& set, std::size_t count) {
+    constexpr float kSlack = 3e-6f;  // rounding of positions
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    for (std::size_t p = 0; p < patches.patches.size(); ++p) {
+        const auto first = set.patch_begin[p], end = set.patch_begin[p + 1];
+        if (first == end) continue;
+        const auto begin = patches.patch_begin[p], triangles = patches.patch_begin[p + 1] - begin;
+        for (std::size_t i = 0; i < count / patches.patches.size() + 1; ++i) {
+            const auto t = patches.patch_triangles[begin + random() % triangles];
+            float a = uniform(random), b = uniform(random);
+            if (a + b > 1) {
+                a = 1 - a;
+                b = 1 - b;
+            }
+            const Vec3f point = point_at(mesh, t, {1 - a - b, a, b});
+            const bool held =
+                std::any_of(set.surfels.begin() + static_cast<std::ptrdiff_t>(first),
+                            set.surfels.begin() + static_cast<std::ptrdiff_t>(end), [&](const SurfelSample& surfel) {
+                                const Vec3f d = point - surfel.position;
+                                const float height = d.dot(surfel.normal);
+                                return (d - height * surfel.normal).norm() <= surfel.radius + kSlack &&
+                                       height <= surfel.above + kSlack && -height <= surfel.below + kSlack;
+                            });
+            if (!held) return false;
+        }
+    }
+    return true;
+}
+
 // The same measure without a grid: every point against every disk.
 Coverage brute_force_coverage(const IndexedMesh& mesh, const SurfelSet& set, std::size_t count) {
     std::vector<double> area;
@@ -127,6 +159,7 @@ TEST_CASE("awkward meshes are covered in every mode", "[surfel]") {
                 check_invariants(mesh, patches, set);
                 CHECK(measure_coverage(mesh, patches, set, kPoints, kFreshSeed).uncovered == 0);
                 CHECK(set.stats.uncovered == 0);
+                CHECK(solids_hold_surface(mesh, patches, set, 400));
             }
         }
     }

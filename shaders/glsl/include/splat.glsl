@@ -8,7 +8,13 @@
 // which is the ray-plane intersection of Botsch et al. (thesis 3.4.2, figure 3.8) with everything that does not depend
 // on the pixel moved to the vertex stage, and, being relative to P, without its cancellation far from the origin.
 // P is the centre (a = 0) unless the disk crosses the near plane; then P is the disk's farthest point (|a| = 1), which
-// projects safely. Needs frame.glsl.
+// projects safely.
+//
+// A flat disk stands for a piece of surface that is not flat. The part of the cylinder over the disk between `below` and
+// `above` its plane (preprocess/model_format/surfel_extent.h) holds all of that piece, and every piece of the surface has
+// its disk. So a ray that meets the surface meets one of these solids, even where it slips between two disks that are
+// tilted against each other: no holes, from any side. A solid that is met beside its disk shows only where no disk does.
+// Needs frame.glsl.
 #ifndef SPLICE_SPLAT_GLSL
 #define SPLICE_SPLAT_GLSL
 
@@ -18,6 +24,8 @@ struct Splat {
     vec2 g;
     float anchor_depth; // t_P
     vec2 plane_offset;  // a
+    vec3 skew;          // how (u, v) and t change along the ray, a radius along the normal; see skew_at
+    vec2 swell;         // how far the solid reaches above and below the plane, in radii
     float rise;         // the disk's depths are within this of t_P
     float epsilon;      // by how much the visibility pass moves depth away, along the ray, world units
     vec3 conic;         // V^-1: xx, xy, yy; V the resampling covariance, thesis 3.22
@@ -78,11 +86,14 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
 
 // `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing
 // of it can be seen.
-bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float epsilon, out Splat splat) {
+bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swell, float epsilon,
+                out Splat splat) {
     const float depth = -centre.z;
     const vec2 slope = vec2(-s.z, -t.z);  // change of depth along the tangents
     const float steepness = length(slope);
-    splat.rise = radius * steepness;
+    const float thickness = radius * max(swell.x, swell.y);
+    splat.swell = swell;
+    splat.rise = radius * steepness + thickness * abs(normal.z);
     if (depth + splat.rise <= frame.near_plane) return false;
     const bool crosses_near = depth - splat.rise < frame.near_plane;
 
@@ -103,6 +114,8 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ep
     const vec3 along_x = (dx - splat.g.x * ray) * reach, along_y = (dy - splat.g.y * ray) * reach;
     splat.anchor = project_to_window(p);
     splat.plane_map = vec4(dot(s, along_x), dot(t, along_x), dot(s, along_y), dot(t, along_y));
+    const vec3 off_axis = ORTHOGRAPHIC ? ray / facing : centre / radius;
+    splat.skew = vec3(dot(s, off_axis), dot(t, off_axis), radius / facing);
     splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
 
     if (crosses_near) {
@@ -119,14 +132,18 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ep
     if (ORTHOGRAPHIC) {
         jx = eta * vec2(s.x, t.x);
         jy = -eta * vec2(s.y, t.y);
-        const vec2 extent = vec2(length(jx), length(jy));
+        const vec2 extent = vec2(length(jx), length(jy)) + frame.pixel_scale * thickness * abs(normal.xy);
         splat.disk_bounds = vec4(splat.anchor - extent, splat.anchor + extent);
     } else {
         jx = eta / depth * (vec2(s.x, t.x) - slope * (centre.x / depth));
         jy = -eta / depth * (vec2(s.y, t.y) - slope * (centre.y / depth));
         const vec2 x = projected_extremes(centre.x, s.x, t.x, depth, slope.x, slope.y, radius);
         const vec2 y = projected_extremes(-centre.y, -s.y, -t.y, depth, slope.x, slope.y, radius);
-        splat.disk_bounds = frame.viewport.xyxy * 0.5 + frame.pixel_scale * vec4(x.x, y.x, x.y, y.y);
+        // A point at (x, y) in the image that moves by h along the normal moves there by h (n - n_z (x, y)) / depth.
+        const vec2 farthest = max(abs(vec2(x.x, y.x)), abs(vec2(x.y, y.y)));
+        const vec2 faces = thickness / (depth - splat.rise) * (abs(normal.xy) + abs(normal.z) * farthest);
+        splat.disk_bounds =
+            frame.viewport.xyxy * 0.5 + frame.pixel_scale * (vec4(x.x, y.x, x.y, y.y) + vec4(-faces, faces));
     }
     if (frame.prefilter == 0) {
         splat.conic = vec3(NOWHERE, 0, NOWHERE);
@@ -152,13 +169,20 @@ float flagged(float value, bool flag) { return flag ? -max(value, 1e-30) : value
 
 struct SplatHit {
     bool on_disk;      // the ray meets the disk, or the pixel holds the centre of a disk between pixel centres
-    float depth;       // of the plane there, or of that centre
+    bool beside_disk;  // it does not, but meets the solid
+    float depth;       // of the plane there, or of that centre, or of where the ray is nearest the solid's axis
     float distance2;   // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
     vec2 uv;           // where the ray meets the plane, in radii
 };
 
+// How (u, v) e changes along the pixel's ray, a radius along the normal; t e changes by skew.z. In perspective skew.xy is
+// where the centre lies along the tangents, in radii, seen from the eye.
+vec2 skew_at(vec3 skew, vec2 uv, float e, float anchor_depth) {
+    return ORTHOGRAPHIC ? skew.xy : (uv + skew.xy * e) * (skew.z / anchor_depth);
+}
+
 // A speck that its own pixel's ray misses shows there all the same, else what is behind would bleed through.
-SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset,
+SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset, vec3 skew, vec2 swell,
                   bool sub_pixel) {
     const vec2 d = pixel - anchor;
     const float gd = dot(g, d);
@@ -175,8 +199,25 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_
         hit.depth = anchor_depth;
         hit.uv = vec2(0);
     }
+    hit.beside_disk = false;
+    if (!hit.on_disk) {
+        const vec2 change = skew_at(skew, uv, e, anchor_depth);
+        const float height = clamp(-dot(uv, change) / max(dot(change, change), 1e-30), -swell.y, swell.x);
+        const vec2 nearest = uv + height * change;
+        const float depth = ((ORTHOGRAPHIC ? anchor_depth - gd : anchor_depth) + height * skew.z) / e;
+        hit.beside_disk = dot(nearest, nearest) <= e * e && depth >= frame.near_plane;
+        if (hit.beside_disk) {
+            hit.depth = depth;
+            hit.uv = nearest / e;
+        }
+    }
     return hit;
 }
+
+// What is met beside a disk moves away this many times as far as a disk, and weighs this much less, so that disks decide
+// wherever there are any.
+const float BESIDE_PUSH = 4;
+const float BESIDE_WEIGHT = 1.0 / 4096;
 
 // Depth moved away from the eye along the pixel's ray by `epsilon`.
 float push_back(float depth, float epsilon, vec2 pixel) {

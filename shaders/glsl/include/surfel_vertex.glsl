@@ -7,12 +7,13 @@
 layout(constant_id = 0) const bool AS_QUADS = false;
 
 layout(location = 0) in vec3 in_position;
-layout(location = 1) in vec2 in_radius_epsilon;
+layout(location = 1) in float in_radius;
 layout(location = 2) in vec2 in_normal;   // octahedral
 layout(location = 3) in vec4 in_colour;   // sRGB-encoded
 layout(location = 4) in float in_bend_0;  // format::Surfel::shading_bend, 1 for the largest
 layout(location = 5) in uint in_patch;
 layout(location = 6) in vec4 in_bend_1_4;
+layout(location = 7) in uint in_extent;  // preprocess/model_format/surfel_extent.h
 
 const float SLACK_PX = 0.05;  // rasterisers snap positions to 1/256 pixel or so
 
@@ -32,6 +33,10 @@ struct SurfelFrame {
     float radius;               // world units
 };
 
+// kSwellStep, kSwellStep, kEpsilonStep; kSwellOne, kSwellOne, kEpsilonOne
+const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
+const vec3 EXTENT_ONES = vec3(31, 31, 24);
+
 // The splat of this vertex's surfel; false if it is not to be drawn.
 bool surfel_splat(out Splat splat, out SurfelFrame surfel) {
     const vec3 centre = surfel.centre = to_view_space(in_position);
@@ -42,13 +47,17 @@ bool surfel_splat(out Splat splat, out SurfelFrame surfel) {
     surfel.t = normal_to_view_space(surfel.t);
     const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
     if (!two_sided && beyond_horizon(normal, centre)) return false;
-    float radius = in_radius_epsilon.x * instance.scale;
+    const float baked_radius = in_radius * instance.scale;
+    float radius = baked_radius;
     if (VIEW == VIEW_SAMPLES) {
         if (!in_sample(in_position)) return false;
         radius *= frame.sample_radius;
     }
     surfel.radius = radius;
-    return make_splat(centre, normal, surfel.s, surfel.t, radius, in_radius_epsilon.y * instance.scale * instance.epsilon_scale, splat);
+    const uvec3 steps = uvec3(in_extent & 31, in_extent >> 5 & 31, in_extent >> 10);
+    const vec3 shares = mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
+    return make_splat(centre, normal, surfel.s, surfel.t, radius, VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      shares.z * baked_radius * instance.epsilon_scale, splat);
 }
 
 // Places this vertex so that the primitive covers every pixel of `bounds` and the one that holds the centre.

@@ -1,0 +1,114 @@
+// A disk stands for surface above and below its plane: seen from any side, it covers the pixels whose rays meet the
+// part of the cylinder over the disk that holds that surface. Held against an intersection in double precision.
+#include "engine/capture/capture.h"
+#include "preprocess/model_format/half.h"
+#include "preprocess/model_format/surfel_extent.h"
+#include "tests/engine/handmade_model.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace splice;
+using namespace splice::test;
+
+namespace {
+
+constexpr std::uint32_t kSize = 160;
+// Single precision decides otherwise only where the truth is as close as this, in radii.
+constexpr double kUndecided = 3e-3;
+
+Camera looking_down_z(bool orthographic) {
+    Camera camera;
+    camera.eye = {0, 0, 0};
+    camera.target = {0, 0, -1};
+    camera.fov_y_degrees = 60;
+    camera.near_plane = 0.01;
+    camera.far_plane = 100;
+    camera.orthographic = orthographic;
+    camera.orthographic_height = 2;
+    return camera;
+}
+
+/// How near to the disk's axis the ray comes within the solid, in radii.
+double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dvec3& ray) {
+    const double radius = float_from_half(half_at_least(disk.radius));
+    const SurfelExtent extent = decode_extent(
+        encode_extent({disk.above, disk.below, disk.epsilon}, static_cast<float>(radius)), static_cast<float>(radius));
+    const glm::dvec3 n = glm::normalize(glm::dvec3(disk.normal)), from = origin - glm::dvec3(disk.centre);
+    const double rise = glm::dot(ray, n), start = glm::dot(from, n);
+    const double t0 = (-double{extent.below} - start) / rise, t1 = (double{extent.above} - start) / rise;
+    const glm::dvec3 across = from - start * n, along = ray - rise * n;
+    const double length2 = std::max(glm::dot(along, along), 1e-30);
+    const double t = std::clamp(-glm::dot(across, along) / length2, std::min(t0, t1), std::max(t0, t1));
+    return glm::length(across + t * along) / radius;
+}
+
+void check_cover(const Disk& disk, bool orthographic, bool quads) {
+    Renderer renderer({});
+    HandmadeModel model(true);
+    model.add_surfels({disk});
+    Scene scene = scene_of(renderer.load(view_of(model.model())));
+    CaptureSettings settings;
+    settings.width = settings.height = kSize;
+    settings.camera = looking_down_z(orthographic);
+    settings.clip_to_scene = false;
+    settings.force_quads = quads;
+    settings.want_depth = true;
+    const Frame frame = renderer.render(scene, settings);
+    const double scale = orthographic ? kSize / 2.0 : kSize / 2.0 / std::tan(glm::radians(30.0));
+    int covered = 0, wrong_cover = 0, wrong_depth = 0;
+    for (std::uint32_t y = 0; y < kSize; ++y) {
+        for (std::uint32_t x = 0; x < kSize; ++x) {
+            const glm::dvec2 offset((x + 0.5 - kSize / 2.0) / scale, -(y + 0.5 - kSize / 2.0) / scale);
+            const glm::dvec3 origin = orthographic ? glm::dvec3(offset, 0) : glm::dvec3(0);
+            const glm::dvec3 ray = orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset, -1);
+            const double nearest = nearest_to_axis(disk, origin, ray);
+            if (std::abs(nearest - 1) < kUndecided) continue;
+            const std::size_t i = std::size_t{y} * kSize + x;
+            covered += frame.coverage[i] != 0 ? 1 : 0;
+            wrong_cover += (frame.coverage[i] != 0) != (nearest < 1) ? 1 : 0;
+            // Somewhere within the solid.
+            const double off = std::abs(double{frame.depth[i]} + double{disk.centre.z});
+            wrong_depth += frame.coverage[i] != 0 && off > std::hypot(disk.radius, disk.above + disk.below) ? 1 : 0;
+        }
+    }
+    CHECK(covered > 50);
+    CHECK(wrong_cover == 0);
+    CHECK(wrong_depth == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a disk covers the surface that it stands for, from every side") {
+    const glm::vec3 normals[] = {{0, 0, 1}, {0, 1, 0}, {1, 0.3f, 0.02f}, {-0.4f, 0.9f, 0.1f}, {0.5f, 0.5f, -0.01f}};
+    for (const glm::vec3& normal : normals) {
+        for (const bool orthographic : {false, true}) {
+            for (const bool quads : {false, true}) {
+                CAPTURE(normal.x, normal.y, normal.z, orthographic, quads);
+                check_cover({{0.1f, 0.05f, -1.5f}, normal, 0.4f, 0.01f, kRed, 0.12f, 0.05f}, orthographic, quads);
+                check_cover({{0.1f, 0.05f, -1.5f}, normal, 0.4f, 0.01f, kRed, 0, 0.2f}, orthographic, quads);
+            }
+        }
+    }
+}
+
+TEST_CASE("what is met beside a disk yields to the disks around it") {
+    Renderer renderer({});
+    // A thick green disk seen edge-on in front of a red sheet, and a sheet of its own depth through its middle.
+    const Disk thick{{0, 0, -2}, {0, 1, 0}, 0.3f, 0.1f, kGreen, 0.1f, 0.1f};
+    const Disk sheet{{0, 0, -2}, {0, 0, 1}, 0.8f, 0.1f, kRed};
+    HandmadeModel model(true);
+    model.add_surfels({thick, sheet});
+    Scene scene = scene_of(renderer.load(view_of(model.model())));
+    scene.lighting.ambient = glm::dvec3(1);
+    scene.lighting.lights.clear();
+    CaptureSettings settings;
+    settings.width = settings.height = kSize;
+    settings.camera = looking_down_z(false);
+    settings.clip_to_scene = false;
+    const Frame frame = renderer.render(scene, settings);
+    const std::uint8_t* beside = &frame.rgba[4 * (std::size_t{kSize / 2 + 3} * kSize + kSize / 2)];
+    CHECK(beside[0] > 250);
+    CHECK(beside[1] < 16);
+}

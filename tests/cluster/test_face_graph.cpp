@@ -47,7 +47,7 @@ const std::vector<Vec3d> kFivePoints{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
 TEST_CASE("Each edge with two faces pairs them") {
     for (const IndexedMesh& mesh : {random_blob(10, 1), repaired(shapes::torus_knot(2, 3, 60, 6)),
                                     repaired(shapes::terrain(9)), repaired(shapes::machined_part(8))}) {
-        const FaceAdjacency adjacency = find_face_adjacency(mesh, order_faces(mesh).face_of_slot);
+        const FaceAdjacency adjacency = find_face_adjacency(mesh, order_faces(mesh));
         CHECK(pairs_of(adjacency) == pairs_by_edges(mesh));
         CHECK(adjacency.detached_faces == 0);
     }
@@ -57,7 +57,7 @@ TEST_CASE("Faces around a non-manifold edge are kept and the edge is a border") 
     // Three and four faces around the edge 0-1, in turn.
     const std::vector<Triangle> fan{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
     const IndexedMesh three = bare_mesh(kFivePoints, fan);
-    const FaceAdjacency adjacency = find_face_adjacency(three, order_faces(three).face_of_slot);
+    const FaceAdjacency adjacency = find_face_adjacency(three, order_faces(three));
     CHECK(adjacency.pairs.empty());
     CHECK(adjacency.detached_faces > 0);
     CHECK(order_faces(three).size() == 3);
@@ -65,12 +65,12 @@ TEST_CASE("Faces around a non-manifold edge are kept and the edge is a border") 
     std::vector<Vec3d> six = kFivePoints;
     six.emplace_back(0.4, -1, 0.7);
     const IndexedMesh four = bare_mesh(six, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {1, 0, 5}, {1, 2, 3}});
-    CHECK(pairs_of(find_face_adjacency(four, order_faces(four).face_of_slot)) == pairs_by_edges(four));
+    CHECK(pairs_of(find_face_adjacency(four, order_faces(four))) == pairs_by_edges(four));
 }
 
 TEST_CASE("Faces of opposite orientation are paired all the same") {
     const IndexedMesh flipped = bare_mesh(kFivePoints, {{0, 1, 2}, {0, 1, 3}});
-    CHECK(pairs_of(find_face_adjacency(flipped, order_faces(flipped).face_of_slot)) == Pairs{{0, 1}});
+    CHECK(pairs_of(find_face_adjacency(flipped, order_faces(flipped))) == Pairs{{0, 1}});
 }
 
 TEST_CASE("A Moebius strip has no seam") {
@@ -91,7 +91,7 @@ TEST_CASE("A Moebius strip has no seam") {
         triangles.push_back({c, b, d});
     }
     const IndexedMesh strip = bare_mesh(positions, triangles);
-    const Pairs pairs = pairs_of(find_face_adjacency(strip, order_faces(strip).face_of_slot));
+    const Pairs pairs = pairs_of(find_face_adjacency(strip, order_faces(strip)));
     CHECK(pairs == pairs_by_edges(strip));
     CHECK(pairs.size() == triangles.size());
 }
@@ -99,19 +99,19 @@ TEST_CASE("A Moebius strip has no seam") {
 TEST_CASE("Two fans that share a vertex stay apart") {
     const IndexedMesh bowtie =
         bare_mesh({{0, 0, 0}, {1, 0.5, 0}, {1, -0.5, 0}, {-1, 0.5, 0}, {-1, -0.5, 0}}, {{0, 2, 1}, {0, 3, 4}});
-    CHECK(find_face_adjacency(bowtie, order_faces(bowtie).face_of_slot).pairs.empty());
+    CHECK(find_face_adjacency(bowtie, order_faces(bowtie)).pairs.empty());
 }
 
 TEST_CASE("Links never cross materials") {
     IndexedMesh mesh = repaired(shapes::cube(4));
     const std::size_t all =
-        link_faces(mesh, order_faces(mesh), find_face_adjacency(mesh, order_faces(mesh).face_of_slot)).size();
+        link_faces(mesh, order_faces(mesh), find_face_adjacency(mesh, order_faces(mesh))).size();
     mesh.materials.resize(2);
     mesh.triangle_material.assign(mesh.triangles.size(), 0);
     for (std::size_t f = 0; f < mesh.triangles.size(); f += 2)
         mesh.triangle_material[f] = 1;
-    const FaceGraph faces = order_faces(mesh);
-    const auto links = link_faces(mesh, faces, find_face_adjacency(mesh, order_faces(mesh).face_of_slot));
+    const FaceGraph faces = measure_faces(mesh, order_faces(mesh));
+    const auto links = link_faces(mesh, faces.face_of_slot, find_face_adjacency(mesh, order_faces(mesh)));
     CHECK(links.size() < all);
     for (const FaceGraph::Link& l : links) {
         CHECK(mesh.triangle_material[faces.face_of_slot[l.slot[0]]] ==
@@ -121,7 +121,7 @@ TEST_CASE("Links never cross materials") {
 
 TEST_CASE("Slots are a permutation of the faces with their measures") {
     const IndexedMesh mesh = random_blob(8, 2);
-    const FaceGraph faces = order_faces(mesh);
+    const FaceGraph faces = measure_faces(mesh, order_faces(mesh));
     std::vector<std::uint32_t> sorted = faces.face_of_slot;
     std::sort(sorted.begin(), sorted.end());
     for (std::uint32_t f = 0; f < sorted.size(); ++f)

@@ -16,8 +16,8 @@ using namespace splice::test;
 namespace {
 
 FaceGraph graph_of(const IndexedMesh& mesh) {
-    FaceGraph faces = order_faces(mesh);
-    faces.links = link_faces(mesh, faces, find_face_adjacency(mesh, faces.face_of_slot));
+    FaceGraph faces = measure_faces(mesh, order_faces(mesh));
+    faces.links = link_faces(mesh, faces.face_of_slot, find_face_adjacency(mesh, faces.face_of_slot));
     return faces;
 }
 
@@ -37,8 +37,7 @@ std::size_t contract_naively(ClusterGraph& graph, Metric& metric, float threshol
         }
         const auto [cost, a, b] = best;
         if (cost > threshold || cost == kNever) return merges;
-        metric.merge(a, b, graph.border(a, b));
-        graph.merge(a, b, cost, phase);
+        metric.merge(a, b, graph.merge(a, b, cost, phase));
     }
 }
 
@@ -183,13 +182,13 @@ TEST_CASE("The pair queue yields pairs in order whatever the mix of pushes and p
     PairQueue queue;
     std::multiset<Key> reference;
     std::set<std::uint32_t> stale_names;
-    const auto stale = [&](const QueuedPair& pair) { return stale_names.count(pair.stamp) != 0; };
+    const auto stale = [&](const QueuedPair& pair) { return stale_names.count(pair.time()) != 0; };
     // Coarse costs make ties; some lie beyond the buckets at either end.
     const auto cost = [&] { return static_cast<float>(static_cast<int>(random() % 97) - 48) / 12.0f; };
     for (std::uint32_t i = 0; i < 20000; ++i) {
         const Key key{cost(), static_cast<std::uint32_t>(random() % 50),
                       50 + static_cast<std::uint32_t>(random() % 50)};
-        queue.push({key.cost, key.a, key.b, i});
+        queue.push({key.cost, key.a, key.b, i % 2 == 0 ? key.a : key.b, i});
         if (random() % 5 == 0) {
             stale_names.insert(i);
         } else {
@@ -198,7 +197,9 @@ TEST_CASE("The pair queue yields pairs in order whatever the mix of pushes and p
         if (random() % 3 == 0 && !reference.empty()) {
             const QueuedPair* top = queue.top(stale);
             REQUIRE(top != nullptr);
-            REQUIRE(std::tuple(top->cost(), top->a(), top->b) ==
+            REQUIRE(top->owner() == (top->time() % 2 == 0 ? top->a() : top->b()));
+            REQUIRE(top->other() == (top->time() % 2 == 0 ? top->b() : top->a()));
+            REQUIRE(std::tuple(top->cost(), top->a(), top->b()) ==
                     std::tuple(reference.begin()->cost, reference.begin()->a, reference.begin()->b));
             reference.erase(reference.begin());
             queue.pop();
@@ -206,7 +207,7 @@ TEST_CASE("The pair queue yields pairs in order whatever the mix of pushes and p
     }
     while (const QueuedPair* top = queue.top(stale)) {
         REQUIRE(!reference.empty());
-        REQUIRE(std::tuple(top->cost(), top->a(), top->b) ==
+        REQUIRE(std::tuple(top->cost(), top->a(), top->b()) ==
                 std::tuple(reference.begin()->cost, reference.begin()->a, reference.begin()->b));
         reference.erase(reference.begin());
         queue.pop();

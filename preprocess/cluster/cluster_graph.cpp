@@ -4,7 +4,7 @@
 
 namespace splice {
 
-ClusterGraph::ClusterGraph(const FaceGraph& faces) 
+ClusterGraph::ClusterGraph(const FaceGraph& faces)
     : arena_(faces.size() * kQuad), slots_(faces.size()), changed_(faces.size(), 0), node_(faces.face_of_slot) {
     for (std::uint32_t s = 0; s < faces.size(); ++s)
         slots_[s] = {s, 0, 0, s};

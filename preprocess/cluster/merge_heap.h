@@ -42,7 +42,8 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
     const auto offer_next = [&](std::uint32_t owner, const QueuedPair& passed) {
         QueuedPair first = QueuedPair::last();
         for (const ClusterLink& l : graph.links(owner)) {
-            const bool looks_after = std::tuple(graph.changed(l.slot), owner) < std::tuple(graph.changed(owner), l.slot);
+            const bool looks_after =
+                std::tuple(graph.changed(l.slot), owner) < std::tuple(graph.changed(owner), l.slot);
             if (!looks_after || !eligible(l.slot)) continue;
             const auto [a, b] = std::minmax(owner, l.slot);
             const float bound = metric.bound(a, b, l.length);

@@ -11,7 +11,7 @@ namespace splice {
 
 /// A place on the surface by which a choice is judged.
 struct JudgedPlace {
-    float roughness;     // RMS angle between the face normals at all points within 0.02 of the model's size and their mean
+    float roughness;  // RMS angle between the face normals at all points within 0.02 of the model's size and their mean
     std::uint32_t face;  // IndexedMesh triangle
 };
 

@@ -1,4 +1,5 @@
 #include "preprocess/cluster/face_graph.h"
+#include "preprocess/cluster/radix_sort.h"
 #include "preprocess/mesh/shapes.h"
 #include "tests/cluster/cluster_fixture.h"
 
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <random>
 
 using namespace splice;
 using namespace splice::test;
@@ -104,8 +106,7 @@ TEST_CASE("Two fans that share a vertex stay apart") {
 
 TEST_CASE("Links never cross materials") {
     IndexedMesh mesh = repaired(shapes::cube(4));
-    const std::size_t all =
-        link_faces(mesh, order_faces(mesh), find_face_adjacency(mesh, order_faces(mesh))).size();
+    const std::size_t all = link_faces(mesh, order_faces(mesh), find_face_adjacency(mesh, order_faces(mesh))).size();
     mesh.materials.resize(2);
     mesh.triangle_material.assign(mesh.triangles.size(), 0);
     for (std::size_t f = 0; f < mesh.triangles.size(); f += 2)
@@ -135,4 +136,21 @@ TEST_CASE("Slots are a permutation of the faces with their measures") {
         CHECK(static_cast<double>(faces.area[s]) == Approx(std::sqrt(h * (h - x) * (h - y) * (h - z))).epsilon(1e-3));
         CHECK(faces.normal[s].dot(b - a) == Approx(0).margin(1e-5));
     }
+}
+
+TEST_CASE("A radix sort orders by the high half and keeps equal ones in their order") {
+    std::mt19937_64 random(3);
+    for (const std::uint64_t high_mask : {0xffffffffull, 0xf00000ffull, 0x7ull, 0x0ull}) {
+        std::vector<std::uint64_t> entries(5000);
+        for (std::uint64_t& entry : entries)
+            entry = ((random() & high_mask) << 32) | (random() & 0xffffu);
+        std::vector<std::uint64_t> expected = entries;
+        std::stable_sort(expected.begin(), expected.end(),
+                         [](std::uint64_t a, std::uint64_t b) { return a >> 32 < b >> 32; });
+        radix_sort_by_high_half(entries);
+        REQUIRE(entries == expected);
+    }
+    std::vector<std::uint64_t> none;
+    radix_sort_by_high_half(none);
+    REQUIRE(none.empty());
 }

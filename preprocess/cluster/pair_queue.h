@@ -1,7 +1,7 @@
-// A priority queue of pairs of clusters, exact in its order and built for the way clustering uses it: millions of pairs
-// of which most are stale when their turn comes. Pairs wait unsorted in buckets of similar cost; only the cheapest
-// bucket is kept as a heap, small enough to stay in cache, and stale pairs are dropped when their bucket opens, before
-// any sorting.
+// A priority queue of pairs of clusters, exact in its order and built for the way clustering uses it: a pair a
+// cluster, of which many are stale when their turn comes. Pairs wait unsorted in buckets of similar cost; only the
+// cheapest bucket is kept as a heap, small enough to stay in cache, and stale pairs are dropped when their bucket
+// opens, before any sorting.
 #pragma once
 
 #include <algorithm>

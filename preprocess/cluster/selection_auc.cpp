@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <tuple>
 
 namespace splice {
@@ -73,26 +74,29 @@ struct PointGrid {
             entries[next[block_of(p.position)]++] = {p.position, faces.normal[p.slot]};
     }
 
-    template <class Visit>
-    void for_each_within_radius(const Vec3f& p, const Visit& visit) const {
+    /// The normals of the points within the radius, in `buffer`.
+    std::span<const Vec3f> normals_around(const Vec3f& p, std::vector<Vec3f>& buffer) const {
         const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
         const auto high = [](std::size_t i) { return std::min(i + 1, kSide - 1); };
         const std::size_t x = block(p.x()), y = block(p.y()), z = block(p.z());
+        std::size_t count = 0;
         for (std::size_t bz = low(z); bz <= high(z); ++bz) {
             for (std::size_t by = low(y); by <= high(y); ++by) {
-                const std::uint32_t last = begin[index(high(x), by, bz) + 1];
-                for (std::uint32_t i = begin[index(low(x), by, bz)]; i < last; ++i) {
-                    const bool near = (entries[i].position - p).squaredNorm() <= kRoughnessRadius * kRoughnessRadius;
-                    if (near) visit(entries[i]);
+                const std::uint32_t first = begin[index(low(x), by, bz)], last = begin[index(high(x), by, bz) + 1];
+                if (buffer.size() < count + (last - first)) buffer.resize(count + (last - first));
+                // Whether a point is near cannot be foretold: written in any case, a far one is overwritten.
+                for (std::uint32_t i = first; i < last; ++i) {
+                    buffer[count] = entries[i].normal;
+                    count += (entries[i].position - p).squaredNorm() <= kRoughnessRadius * kRoughnessRadius;
                 }
             }
         }
+        return {buffer.data(), count};
     }
 };
 
-float roughness_at(const Vec3f& centre, const PointGrid& grid, std::vector<Vec3f>& normals) {
-    normals.clear();
-    grid.for_each_within_radius(centre, [&](const PointGrid::Entry& e) { normals.push_back(e.normal); });
+float roughness_at(const Vec3f& centre, const PointGrid& grid, std::vector<Vec3f>& buffer) {
+    const std::span<const Vec3f> normals = grid.normals_around(centre, buffer);
     Vec3f mean = Vec3f::Zero();
     for (const Vec3f& n : normals)
         mean += n;
@@ -112,10 +116,10 @@ std::vector<JudgedPlace> judge_places(const IndexedMesh& mesh, const FaceGraph& 
     const PointGrid grid(faces, points);
     std::vector<JudgedPlace> places((points.size() + kEvery - 1) / kEvery);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
-        std::vector<Vec3f> normals;
+        std::vector<Vec3f> buffer;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const Point& p = points[i * kEvery];
-            places[i] = {roughness_at(p.position, grid, normals), faces.face_of_slot[p.slot]};
+            places[i] = {roughness_at(p.position, grid, buffer), faces.face_of_slot[p.slot]};
         }
     });
     std::sort(places.begin(), places.end(), [](const JudgedPlace& a, const JudgedPlace& b) {

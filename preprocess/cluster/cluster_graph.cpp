@@ -4,103 +4,99 @@
 
 namespace splice {
 
-ClusterGraph::ClusterGraph(const FaceGraph& faces) : arena_(faces.size() * kQuad), slots_(faces.size()) {
+ClusterGraph::ClusterGraph(const FaceGraph& faces)
+    : arena_(faces.size() * kQuad), slots_(faces.size()), changed_(faces.size(), 0), node_(faces.face_of_slot) {
     for (std::uint32_t s = 0; s < faces.size(); ++s)
-        slots_[s] = {s, 0, 0, 0, s, faces.face_of_slot[s]};
-    // A face has at most three neighbours, so its first block never overflows. Links come in ascending order, which
-    // fills every list in ascending order too: first the neighbours below a slot, then those above.
+        slots_[s] = {s, 0, 0, s};
+    // A face has at most three neighbours, so its first block never overflows.
     const auto append = [&](std::uint32_t slot, std::uint32_t neighbour, float length) {
         arena_[slot * kQuad + slots_[slot].size++] = {neighbour, length};
     };
-    for (const FaceGraph::Link& l : faces.links)
-        append(l.slot[1], l.slot[0], l.length);
-    for (const FaceGraph::Link& l : faces.links)
+    for (const FaceGraph::Link& l : faces.links) {
         append(l.slot[0], l.slot[1], l.length);
+        append(l.slot[1], l.slot[0], l.length);
+    }
     tree_.reserve(faces.size());
 }
 
-float ClusterGraph::border(std::uint32_t a, std::uint32_t b) const {
-    const auto of_a = links(a);
-    return std::lower_bound(of_a.begin(), of_a.end(), b,
-                            [](const ClusterLink& l, std::uint32_t slot) { return l.slot < slot; })
-        ->length;
-}
-
-std::uint32_t ClusterGraph::allocate(std::uint32_t size_class) {
-    if (size_class < free_.size() && !free_[size_class].empty()) {
-        const std::uint32_t block = free_[size_class].back();
-        free_[size_class].pop_back();
-        return block;
-    }
-    const auto block = static_cast<std::uint32_t>(arena_.size() / kQuad);
-    arena_.resize(arena_.size() + (kQuad << size_class));
-    return block;
-}
-
-void ClusterGraph::release(const Slot& slot) {
-    if (free_.size() <= slot.size_class) free_.resize(slot.size_class + 1);
-    free_[slot.size_class].push_back(slot.block);
-}
-
-void ClusterGraph::store(Slot& slot, std::span<const ClusterLink> links) {
-    if (links.size() > (kQuad << slot.size_class)) {
-        release(slot);
-        while (links.size() > (kQuad << slot.size_class))
-            ++slot.size_class;
-        slot.block = allocate(slot.size_class);
-    }
-    slot.size = static_cast<std::uint32_t>(links.size());
-    std::copy(links.begin(), links.end(), arena_.begin() + static_cast<std::ptrdiff_t>(slot.block * kQuad));
-}
-
-/// In the list of `slot`: `from` becomes `to`, to < from; joined if `to` is there already. The list never grows.
-void ClusterGraph::rename_neighbour(std::uint32_t slot, std::uint32_t from, std::uint32_t to) {
-    ClusterLink* const first = arena_.data() + slots_[slot].block * kQuad;
-    ClusterLink* const last = first + slots_[slot].size;
-    const auto before = [](const ClusterLink& l, std::uint32_t s) { return l.slot < s; };
-    ClusterLink* const old = std::lower_bound(first, last, from, before);
-    ClusterLink* const target = std::lower_bound(first, old, to, before);
-    const float length = old->length;
-    if (target->slot == to) {
-        target->length += length;
-        std::copy(old + 1, last, old);
-        --slots_[slot].size;
+/// Makes room for `size` links in the list of `slot`; those there are kept.
+void ClusterGraph::grow(Slot& slot, std::uint32_t size) {
+    std::uint32_t size_class = slot.size_class;
+    while (size > (kQuad << size_class))
+        ++size_class;
+    if (size_class == slot.size_class) return;
+    if (free_.size() <= size_class) free_.resize(size_class + 1);
+    std::uint32_t block = 0;
+    if (free_[size_class].empty()) {
+        block = static_cast<std::uint32_t>(arena_.size() / kQuad);
+        arena_.resize(arena_.size() + (kQuad << size_class));
     } else {
-        std::copy_backward(target, old, old + 1);
-        *target = {to, length};
+        block = free_[size_class].back();
+        free_[size_class].pop_back();
     }
+    const ClusterLink* const old = first_link(slot);
+    std::copy(old, old + slot.size, arena_.data() + block * kQuad);
+    free_[slot.size_class].push_back(slot.block);
+    slot.block = block;
+    slot.size_class = size_class;
 }
 
-void ClusterGraph::merge(std::uint32_t a, std::uint32_t b, float cost, std::uint32_t phase) {
-    merged_.clear();
-    const auto of_a = links(a), of_b = links(b);
-    auto ia = of_a.begin(), ib = of_b.begin();
-    while (ia != of_a.end() || ib != of_b.end()) {
-        if (ib == of_b.end() || (ia != of_a.end() && ia->slot < ib->slot)) {
-            if (ia->slot != b) merged_.push_back(*ia);
-            ++ia;
-        } else if (ia == of_a.end() || ib->slot < ia->slot) {
-            if (ib->slot != a) merged_.push_back(*ib);
-            ++ib;
-        } else {
-            merged_.push_back({ia->slot, ia->length + ib->length});
-            ++ia;
-            ++ib;
-        }
+/// In the list of `slot`: the neighbour `from` becomes `to`. Returns whether `to` was there already; the two are then
+/// joined.
+bool ClusterGraph::redirect(std::uint32_t slot, std::uint32_t from, std::uint32_t to) {
+    ClusterLink* const first = first_link(slots_[slot]);
+    const std::uint32_t size = slots_[slot].size;
+    std::uint32_t at_from = size, at_to = size;
+    for (std::uint32_t i = 0; i < size; ++i) {
+        at_from = first[i].slot == from ? i : at_from;
+        at_to = first[i].slot == to ? i : at_to;
     }
-    for (const ClusterLink& l : of_b) {
-        if (l.slot != a) rename_neighbour(l.slot, b, a);
+    if (at_to == size) {
+        first[at_from].slot = to;
+        return false;
     }
+    first[at_to].length += first[at_from].length;
+    first[at_from] = first[size - 1];
+    slots_[slot].size = size - 1;
+    return true;
+}
+
+float ClusterGraph::merge(std::uint32_t a, std::uint32_t b, float cost, std::uint32_t phase) {
     Slot& into = slots_[a];
     Slot& gone = slots_[b];
-    release(gone);
-    store(into, merged_);
+    const auto find = [](ClusterLink* link, std::uint32_t slot) {
+        while (link->slot != slot)
+            ++link;
+        return link;
+    };
+    ClusterLink* const of_a = first_link(into);
+    ClusterLink* const of_b = first_link(gone);
+    ClusterLink* const between = find(of_a, b);
+    const float border = between->length;
+    *between = of_a[--into.size];
+    // What only b touched gathers at the front of its list.
+    std::uint32_t fresh = 0;
+    for (std::uint32_t i = 0; i < gone.size; ++i) {
+        const ClusterLink link = of_b[i];
+        if (link.slot == a) continue;
+        if (redirect(link.slot, b, a)) {
+            find(of_a, link.slot)->length += link.length;
+        } else {
+            of_b[fresh++] = link;
+        }
+    }
+    grow(into, into.size + fresh);
+    const ClusterLink* const added = first_link(gone);  // growing may have moved the arena
+    std::copy(added, added + fresh, first_link(into) + into.size);
+    into.size += fresh;
+    if (free_.size() <= gone.size_class) free_.resize(gone.size_class + 1);
+    free_[gone.size_class].push_back(gone.block);
     gone.size = 0;
     gone.parent = a;
-    ++into.version;
-    ++gone.version;
-    tree_.push_back({{into.node, gone.node}, cost, phase});
-    into.node = static_cast<std::uint32_t>(slots() + tree_.size() - 1);
+    tree_.push_back({{node_[a], node_[b]}, cost, phase});
+    changed_[a] = changed_[b] = now();
+    node_[a] = static_cast<std::uint32_t>(slots() + tree_.size() - 1);
+    return border;
 }
 
 }  // namespace splice

@@ -121,20 +121,25 @@ struct Surface {
     Settings settings;
     std::vector<float> scores;  // by slot; empty if not scored
     float threshold = kRoughScore;
+    ClusterGraph graph;
 };
 
 Surface measure_surface(const IndexedMesh& mesh, const ClusterOptions& options) {
     Surface surface;
     FaceRoughness roughness;
-    FaceAdjacency adjacency;
-    surface.faces = order_faces(mesh);
-    surface.settings = resolve(options, surface.faces);
-    tbb::parallel_invoke([&] { adjacency = find_face_adjacency(mesh, surface.faces.face_of_slot); },
+    std::vector<FaceGraph::Link> links;
+    const std::vector<std::uint32_t> order = order_faces(mesh);
+    tbb::parallel_invoke([&] { links = link_faces(mesh, order, find_face_adjacency(mesh, order)); },
                          [&] {
+                             surface.faces = measure_faces(mesh, order);
+                             surface.settings = resolve(options, surface.faces);
                              if (surface.settings.scored()) roughness = measure_roughness(mesh, surface.faces);
                          });
-    surface.faces.links = link_faces(mesh, surface.faces, adjacency);
-    if (surface.settings.scored()) surface.scores = score_faces(surface.faces, roughness);
+    surface.faces.links = std::move(links);
+    tbb::parallel_invoke([&] { surface.graph = ClusterGraph(surface.faces); },
+                         [&] {
+                             if (surface.settings.scored()) surface.scores = score_faces(surface.faces, roughness);
+                         });
     if (surface.settings.share) surface.threshold = score_at_share(surface.scores, *surface.settings.share);
     return surface;
 }
@@ -144,8 +149,8 @@ struct Clusters {
     ClusterTable table;
     std::vector<std::uint8_t> surfel;  // by slot: on the rough side, to be drawn as surfels
 
-    explicit Clusters(const Surface& surface)
-        : graph(surface.faces),
+    explicit Clusters(Surface& surface)
+        : graph(std::move(surface.graph)),
           table(surface.faces, surface.scores),
           surfel(surface.faces.size(), surface.settings.all_surfels) {
         for (std::size_t s = 0; s < surface.scores.size(); ++s)
@@ -207,27 +212,36 @@ void run_phase_two(const Settings& settings, Clusters& clusters, const Tick& tic
 PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, const Progress& progress) {
     check(options);
     Stopwatch watch;
-    const Surface surface = measure_surface(mesh, options);
+    Surface surface = measure_surface(mesh, options);
     const Settings& settings = surface.settings;
     Clusters clusters(surface);
-    double seconds_selection = watch.lap();
+    double seconds_selection = watch.lap(), seconds_phase1 = 0, seconds_phase2 = 0;
 
     const auto tick = [&](std::size_t) {
         const auto merged = static_cast<double>(clusters.graph.tree().size());
         if (progress) progress("cluster", merged / static_cast<double>(surface.faces.size()));
     };
-    run_phase_one(mesh, surface, clusters, tick);
-    const double seconds_phase1 = watch.lap();
-
-    if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
-    seconds_selection += watch.lap();
-
-    if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
-    const double seconds_phase2 = watch.lap();
+    const auto contract_clusters = [&] {
+        Stopwatch phase_watch;
+        run_phase_one(mesh, surface, clusters, tick);
+        seconds_phase1 = phase_watch.lap();
+        if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
+        seconds_selection += phase_watch.lap();
+        if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
+        seconds_phase2 = phase_watch.lap();
+    };
+    // Contraction is one chain of dependent merges; another thread measures meanwhile what its outcome is judged by.
+    std::vector<JudgedPlace> places;
+    tbb::parallel_invoke(
+        [&] {
+            if (settings.hybrid) places = judge_places(mesh, surface.faces);
+        },
+        contract_clusters);
     if (progress) progress("cluster", 1.0);
 
+    watch.lap();
     PatchSet set = assemble_patches(mesh, surface.faces, clusters.graph, clusters.surfel);
-    set.stats.selection_auc = measure_selection_auc(mesh, surface.faces, set);
+    set.stats.selection_auc = selection_auc(places, set);
     set.stats.seconds_phase1 = seconds_phase1;
     set.stats.seconds_phase2 = seconds_phase2;
     set.stats.seconds_selection = seconds_selection + watch.lap();

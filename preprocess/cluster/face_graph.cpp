@@ -1,7 +1,8 @@
 #include "preprocess/cluster/face_graph.h"
 
+#include "preprocess/cluster/radix_sort.h"
+
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -22,21 +23,6 @@ std::uint32_t morton_code(const Vec3f& p) {
         return static_cast<std::uint32_t>(std::clamp((x + 0.5f) * 1024.0f, 0.0f, 1023.0f));  // unit box at the origin
     };
     return spread_bits(cell(p.x())) | (spread_bits(cell(p.y())) << 1) | (spread_bits(cell(p.z())) << 2);
-}
-
-/// Faces by the Morton code of their centroid, ties by index.
-std::vector<std::uint32_t> morton_order(const IndexedMesh& mesh) {
-    std::vector<std::uint64_t> keys(mesh.triangles.size());
-    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t f) {
-        const Triangle& t = mesh.triangles[f];
-        const Vec3f centroid = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3.0f;
-        keys[f] = (std::uint64_t{morton_code(centroid)} << 32) | f;
-    });
-    tbb::parallel_sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(),
-                   [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
-    return order;
 }
 
 /// Links in ascending order without sorting: each slot has at most three, and a counting pass places them.
@@ -60,9 +46,23 @@ std::vector<FaceGraph::Link> place_links(const std::vector<FaceGraph::Link>& lin
 
 }  // namespace
 
-FaceGraph order_faces(const IndexedMesh& mesh) {
+std::vector<std::uint32_t> order_faces(const IndexedMesh& mesh) {
+    std::vector<std::uint64_t> keys(mesh.triangles.size());
+    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t f) {
+        const Triangle& t = mesh.triangles[f];
+        const Vec3f centroid = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3.0f;
+        keys[f] = (std::uint64_t{morton_code(centroid)} << 32) | f;
+    });
+    radix_sort_by_high_half(keys);
+    std::vector<std::uint32_t> order(keys.size());
+    std::transform(keys.begin(), keys.end(), order.begin(),
+                   [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
+    return order;
+}
+
+FaceGraph measure_faces(const IndexedMesh& mesh, std::vector<std::uint32_t> order) {
     FaceGraph graph;
-    graph.face_of_slot = morton_order(mesh);
+    graph.face_of_slot = std::move(order);
     const std::size_t faces = mesh.triangles.size();
     graph.area.resize(faces);
     graph.perimeter.resize(faces);
@@ -79,11 +79,11 @@ FaceGraph order_faces(const IndexedMesh& mesh) {
     return graph;
 }
 
-std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, const FaceGraph& faces,
+std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, std::span<const std::uint32_t> face_of_slot,
                                         const FaceAdjacency& adjacency) {
-    std::vector<std::uint32_t> slot_of_face(faces.size());
-    for (std::uint32_t s = 0; s < faces.size(); ++s)
-        slot_of_face[faces.face_of_slot[s]] = s;
+    std::vector<std::uint32_t> slot_of_face(face_of_slot.size());
+    for (std::uint32_t s = 0; s < face_of_slot.size(); ++s)
+        slot_of_face[face_of_slot[s]] = s;
     std::vector<FaceGraph::Link> links;
     links.reserve(adjacency.pairs.size());
     for (const FacePair& pair : adjacency.pairs) {
@@ -93,7 +93,7 @@ std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, const FaceGraph
         const std::uint32_t s0 = slot_of_face[f0], s1 = slot_of_face[f1];
         links.push_back({{std::min(s0, s1), std::max(s0, s1)}, length});
     }
-    return place_links(links, faces.size());
+    return place_links(links, face_of_slot.size());
 }
 
 }  // namespace splice

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace splice {
@@ -38,11 +39,19 @@ inline float angle_between(const Vec3f& a, const Vec3f& b) {
     return 2 * std::asin(std::min(1.0f, (a - b).norm() / 2));
 }
 
-/// All but the links. Deterministic for any number of threads.
-FaceGraph order_faces(const IndexedMesh& mesh);
+/// x without its whole part; x >= 0 and below 2^63. (The library's fmod is far slower.)
+inline double fraction(double x) {
+    return x - static_cast<double>(static_cast<std::int64_t>(x));
+}
+
+/// Faces by the Morton code of their centroid, ties by index: what goes into each slot.
+std::vector<std::uint32_t> order_faces(const IndexedMesh& mesh);
+
+/// All but the links, of the faces in `order`. Deterministic for any number of threads.
+FaceGraph measure_faces(const IndexedMesh& mesh, std::vector<std::uint32_t> order);
 
 /// The links, from the half-edge structure's pairs of faces.
-std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, const FaceGraph& faces,
+std::vector<FaceGraph::Link> link_faces(const IndexedMesh& mesh, std::span<const std::uint32_t> face_of_slot,
                                         const FaceAdjacency& adjacency);
 
 }  // namespace splice

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 
 namespace splice {
 
@@ -23,58 +24,74 @@ inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// Contracts `graph` while the cheapest pair costs at most `threshold`. `eligible(slot)` tells who may take part;
 /// `tick(n)` is called after n merges, some 200 times. Returns the number of merges.
+///
+/// Each pair is looked after by the cluster of the two that changed last (the lower slot if neither has), and only the
+/// first of the pairs that a cluster looks after waits in the queue. It stays a lower bound for the others: they were
+/// there when it was chosen, and can only fall to neighbours that change. So a merge queues one pair, not six.
 template <class Metric, class Eligible, class Tick>
 std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::uint32_t phase,
                      const Eligible& eligible, const Tick& tick) {
     const float limit = std::min(threshold, std::numeric_limits<float>::max());  // kNever is above it
-    // Versions only grow, so a pair whose stamp is not the current one has seen a cluster change. Odd: cost, not bound.
-    const auto stamp_of = [&](std::uint32_t a, std::uint32_t b) { return 2 * (graph.version(a) + graph.version(b)); };
-    const auto stale = [&](const QueuedPair& pair) { return (pair.stamp & ~1u) != stamp_of(pair.a(), pair.b); };
-
     const auto prefetch = [&](std::uint32_t slot) {
         graph.prefetch(slot);
         metric.prefetch(slot);
     };
 
     PairQueue queue;
-    const auto offer = [&](std::uint32_t a, std::uint32_t b, float length) {
-        const float bound = metric.bound(a, b, length);
-        if (bound <= limit) queue.push({bound, a, b, stamp_of(a, b)});
+    /// Queues the first pair that `owner` looks after, of those beyond `passed`.
+    const auto offer_next = [&](std::uint32_t owner, const QueuedPair& passed) {
+        QueuedPair first = QueuedPair::last();
+        for (const ClusterLink& l : graph.links(owner)) {
+            const bool looks_after =
+                std::tuple(graph.changed(l.slot), owner) < std::tuple(graph.changed(owner), l.slot);
+            if (!looks_after || !eligible(l.slot)) continue;
+            const auto [a, b] = std::minmax(owner, l.slot);
+            const float bound = metric.bound(a, b, l.length);
+            if (!(bound <= limit)) continue;
+            const QueuedPair pair(bound, a, b, owner, graph.now());
+            if (passed < pair && pair < first) first = pair;
+        }
+        if (first < QueuedPair::last()) queue.push(first);
     };
     for (std::uint32_t a = 0; a < graph.slots(); ++a) {
-        if (!graph.alive(a) || !eligible(a)) continue;
-        for (const ClusterLink& l : graph.links(a)) {
-            if (l.slot > a && eligible(l.slot)) offer(a, l.slot, l.length);
-        }
+        if (graph.alive(a) && eligible(a)) offer_next(a, QueuedPair::first());
     }
 
-    const std::size_t tick_every = graph.slots() / 200 + 1;
-    std::size_t merges = 0;
-    while (const QueuedPair* top = queue.top(stale)) {
-        const float key = top->cost();
-        const std::uint32_t a = top->a(), b = top->b, stamp = top->stamp;
-        queue.pop();
-        if (stamp % 2 == 0) {
-            const float cost = metric.cost(a, b, key);
-            if (cost > key) {
-                if (cost <= limit) queue.push({cost, a, b, stamp + 1});
-                continue;
-            }
-        }
-        // Contraction hops about in memory: ask early for what it needs of the neighbours and of the next pair.
-        for (const std::uint32_t slot : {a, b}) {
+    // Contraction hops about in memory: ask early for what the next pairs need.
+    const auto prefetch_next = [&] {
+        const auto next = queue.peek();
+        if (next.empty()) return;
+        for (const std::uint32_t slot : {next[0].a(), next[0].b()}) {
             for (const ClusterLink& l : graph.links(slot))
                 prefetch(l.slot);
         }
-        if (const QueuedPair* next = queue.peek()) {
-            prefetch(next->a());
-            prefetch(next->b);
+        for (const QueuedPair& later : next.subspan(1)) {
+            prefetch(later.a());
+            prefetch(later.b());
         }
-        metric.merge(a, b, graph.border(a, b));
-        graph.merge(a, b, key, phase);
-        for (const ClusterLink& l : graph.links(a)) {
-            if (eligible(l.slot)) offer(std::min(a, l.slot), std::max(a, l.slot), l.length);
+    };
+    const auto stale = [&](const QueuedPair& pair) { return graph.changed(pair.owner()) > pair.time(); };
+    const std::size_t tick_every = graph.slots() / 200 + 1;
+    std::size_t merges = 0;
+    while (const QueuedPair* top = queue.top(stale)) {
+        const QueuedPair pair = *top;
+        queue.pop();
+        prefetch_next();
+        const std::uint32_t a = pair.a(), b = pair.b();
+        if (graph.changed(pair.other()) > pair.time()) {
+            if (!pair.exact()) offer_next(pair.owner(), pair);
+            continue;
         }
+        if (!pair.exact()) {
+            const float cost = metric.cost(a, b, pair.cost());
+            if (cost > pair.cost()) {
+                if (cost <= limit) queue.push(QueuedPair(cost, a, b, pair.owner(), pair.time(), true));
+                offer_next(pair.owner(), pair);
+                continue;
+            }
+        }
+        metric.merge(a, b, graph.merge(a, b, pair.cost(), phase));
+        offer_next(a, QueuedPair::first());
         if (++merges % tick_every == 0) tick(merges);
     }
     return merges;

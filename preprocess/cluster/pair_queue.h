@@ -1,7 +1,7 @@
-// A priority queue of pairs of clusters, exact in its order and built for the way clustering uses it: millions of pairs
-// of which most are stale when their turn comes. Pairs wait unsorted in buckets of similar cost; only the cheapest
-// bucket is kept as a heap, small enough to stay in cache, and stale pairs are dropped when their bucket opens, before
-// any sorting.
+// A priority queue of pairs of clusters, exact in its order and built for the way clustering uses it: a pair a
+// cluster, of which many are stale when their turn comes. Pairs wait unsorted in buckets of similar cost; only the
+// cheapest bucket is kept as a heap, small enough to stay in cache, and stale pairs are dropped when their bucket
+// opens, before any sorting.
 #pragma once
 
 #include <algorithm>
@@ -9,27 +9,41 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace splice {
 
-/// A pair of slots, a < b, with its cost or a lower bound of it. Ordered by (cost, a, b).
-struct QueuedPair {
-    std::uint64_t order;  // cost in the high half, so that it compares as an integer; a in the low half
-    std::uint32_t b;
-    std::uint32_t stamp;  // the user's; takes no part in the order
-
+/// A pair of slots, a < b < 2^31, with its cost or a lower bound of it. Ordered by (cost, a, b).
+class QueuedPair {
+  public:
     QueuedPair() = default;
-    QueuedPair(float cost, std::uint32_t a, std::uint32_t b_, std::uint32_t stamp_)
-        : order((std::uint64_t{ordered(cost)} << 32) | a), b(b_), stamp(stamp_) {}
+    /// `owner` is a or b; `time` below 2^31; `exact` tells a cost from a bound. These take no part in the order.
+    QueuedPair(float cost, std::uint32_t a, std::uint32_t b, std::uint32_t owner, std::uint32_t time,
+               bool exact = false)
+        : order_((std::uint64_t{ordered(cost)} << 32) | a),
+          b_((b << 1) | (owner == b ? 1u : 0u)),
+          time_((time << 1) | (exact ? 1u : 0u)) {}
 
-    std::uint32_t a() const { return static_cast<std::uint32_t>(order); }
+    std::uint32_t a() const { return static_cast<std::uint32_t>(order_); }
+    std::uint32_t b() const { return b_ >> 1; }
+    std::uint32_t owner() const { return b_ & 1u ? b() : a(); }
+    std::uint32_t other() const { return b_ & 1u ? a() : b(); }
+    std::uint32_t time() const { return time_ >> 1; }
+    bool exact() const { return (time_ & 1u) != 0; }
     float cost() const {
-        const auto high = static_cast<std::uint32_t>(order >> 32);
+        const auto high = static_cast<std::uint32_t>(order_ >> 32);
         return std::bit_cast<float>(high & kSign ? high & ~kSign : ~high);
     }
     friend bool operator<(const QueuedPair& x, const QueuedPair& y) {
-        return x.order != y.order ? x.order < y.order : x.b < y.b;
+        return x.order_ != y.order_ ? x.order_ < y.order_ : x.b() < y.b();
+    }
+    /// Before and after all others.
+    static QueuedPair first() { return {}; }
+    static QueuedPair last() {
+        QueuedPair pair;
+        pair.order_ = ~std::uint64_t{0};
+        return pair;
     }
 
   private:
@@ -38,6 +52,10 @@ struct QueuedPair {
         const auto bits = std::bit_cast<std::uint32_t>(cost + 0.0f);  // no negative zero
         return bits & kSign ? ~bits : bits | kSign;
     }
+
+    std::uint64_t order_ = 0;  // cost in the high half, so that it compares as an integer; a in the low half
+    std::uint32_t b_ = 0;      // twice b, odd if b is the owner
+    std::uint32_t time_ = 0;   // twice the time, odd if exact
 };
 
 class PairQueue {
@@ -65,8 +83,8 @@ class PairQueue {
         }
     }
 
-    /// The least of the pairs at hand, stale or not; a hint of what comes next.
-    const QueuedPair* peek() const { return heap_.empty() ? nullptr : &heap_.front(); }
+    /// The least of the pairs at hand and some that are likely to follow it, stale or not: a hint of what comes next.
+    std::span<const QueuedPair> peek() const { return {heap_.data(), std::min<std::size_t>(heap_.size(), 5)}; }
 
     /// Removes the top.
     void pop() {
@@ -77,7 +95,7 @@ class PairQueue {
 
   private:
     // Costs are of the order of 1; what lies outside shares the first or last bucket, which only costs time.
-    static constexpr std::size_t kBuckets = std::size_t{1} << 16;
+    static constexpr std::size_t kBuckets = std::size_t{1} << 12;
     static constexpr float kLowest = -2, kHighest = 2;
     static constexpr std::uint32_t kNone = 0xffffffffu;
     static constexpr std::size_t kChunk = 15;

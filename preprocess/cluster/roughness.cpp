@@ -1,11 +1,15 @@
 #include "preprocess/cluster/roughness.h"
 
+#include "preprocess/cluster/radix_sort.h"
+
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace splice {
 namespace {
@@ -68,7 +72,7 @@ std::vector<std::uint32_t> count_samples(const FaceGraph& faces) {
 Vec3f sample_position(const std::array<Vec3f, 3>& corners, std::uint32_t i, std::uint32_t count) {
     const auto& [a, b, c] = corners;
     if (count == 1) return (a + b + c) / 3.0f;
-    double u = std::fmod(0.5 + i * 0.7548776662466927, 1.0), v = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
+    double u = fraction(0.5 + i * 0.7548776662466927), v = fraction(0.5 + i * 0.5698402909980532);
     if (u + v > 1) u = 1 - u, v = 1 - v;
     return a + static_cast<float>(u) * (b - a) + static_cast<float>(v) * (c - a);
 }
@@ -107,7 +111,7 @@ SurfaceGrid build_grid(const IndexedMesh& mesh, const FaceGraph& faces) {
             keys[first + i] = (cell_key(position, faces.normal[s]) << 32) | (first + i);
         }
     });
-    tbb::parallel_sort(keys.begin(), keys.end());
+    radix_sort_by_high_half(keys);
 
     grid.cell_of_sample.resize(samples.size());
     grid.block_begin.assign(kBlocksPerSide * kBlocksPerSide * kBlocksPerSide + 1, 0);
@@ -138,51 +142,102 @@ SurfaceGrid build_grid(const IndexedMesh& mesh, const FaceGraph& faces) {
     return grid;
 }
 
-template <class Visit>
-void for_each_in_ball(const SurfaceGrid& grid, const Vec3f& centre, const Visit& visit) {
-    const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
-    const auto high = [](std::size_t i) { return std::min(i + 1, kBlocksPerSide - 1); };
-    const std::size_t x = block_of(centre.x()), y = block_of(centre.y()), z = block_of(centre.z());
-    for (std::size_t bz = low(z); bz <= high(z); ++bz) {
-        for (std::size_t by = low(y); by <= high(y); ++by) {
-            const std::uint32_t last = grid.block_begin[block_index(high(x), by, bz) + 1];
-            for (std::uint32_t c = grid.block_begin[block_index(low(x), by, bz)]; c < last; ++c) {
-                const Vec3f offset = grid.cells[c].position - centre;
-                if (offset.squaredNorm() <= kRoughnessRadius * kRoughnessRadius) visit(grid.cells[c]);
-            }
-        }
-    }
-}
-
 struct Neighbourhood {
     float ball, sheet, triangles;
 };
 
-Neighbourhood look_around(const SurfaceGrid& grid, const Cell& centre) {
+/// The cells in and around a block, as runs in x. They hold the ball around any place in the block.
+std::array<std::span<const Cell>, 9> runs_around(const SurfaceGrid& grid, std::size_t block) {
+    const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
+    const auto high = [](std::size_t i) { return std::min(i + 1, kBlocksPerSide - 1); };
+    const std::size_t x = block % kBlocksPerSide, y = block / kBlocksPerSide % kBlocksPerSide,
+                      z = block / kBlocksPerSide / kBlocksPerSide;
+    std::array<std::span<const Cell>, 9> runs;
+    std::size_t run = 0;
+    for (std::size_t bz = low(z); bz <= high(z); ++bz) {
+        for (std::size_t by = low(y); by <= high(y); ++by) {
+            const std::uint32_t first = grid.block_begin[block_index(low(x), by, bz)];
+            const std::uint32_t last = grid.block_begin[block_index(high(x), by, bz) + 1];
+            runs[run++] = {grid.cells.data() + first, last - first};
+        }
+    }
+    return runs;
+}
+
+// Four centres at a time, a lane each, because all centres of a block look at the same cells.
+constexpr std::size_t kLanes = 4;
+using Lanes = float __attribute__((vector_size(16)));
+using Mask = std::int32_t __attribute__((vector_size(16)));
+
+Lanes where(Mask mask, float value) {
+    const Lanes spread = Lanes{} + value;
+    return std::bit_cast<Lanes>(mask & std::bit_cast<Mask>(spread));
+}
+
+struct LaneVector {
+    Lanes x{}, y{}, z{};
+
+    void set(std::size_t lane, const Vec3f& v) { x[lane] = v.x(), y[lane] = v.y(), z[lane] = v.z(); }
+    void add_where(Mask mask, const Vec3f& v) {
+        x += where(mask, v.x());
+        y += where(mask, v.y());
+        z += where(mask, v.z());
+    }
+    Vec3f operator[](std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+};
+
+/// What lies around up to four cells of one block.
+void look_around(const std::array<std::span<const Cell>, 9>& runs, std::span<const Cell> centres, Neighbourhood* out) {
     constexpr float kDisk = std::numbers::pi_v<float> * kRoughnessRadius * kRoughnessRadius;
-    Vec3f ball_sum = Vec3f::Zero(), sheet_sum = Vec3f::Zero();
-    float ball_area = 0, sheet_area = 0, triangles = 0;
-    for_each_in_ball(grid, centre.position, [&](const Cell& cell) {
-        ball_sum += cell.normal_sum;
-        ball_area += cell.area;
-        triangles += cell.triangles;
-        if (cell.direction.dot(centre.direction) < kSheetCosine) return;
-        sheet_sum += cell.normal_sum;
-        sheet_area += cell.area;
+    LaneVector position, direction, ball_sum, sheet_sum;
+    Lanes ball_area{}, sheet_area{}, triangles{};
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const Cell& centre = centres[std::min(i, centres.size() - 1)];
+        position.set(i, centre.position);
+        direction.set(i, centre.direction);
+    }
+    for (const std::span<const Cell> run : runs) {
+        for (const Cell& cell : run) {
+            const Lanes dx = cell.position.x() - position.x, dy = cell.position.y() - position.y,
+                        dz = cell.position.z() - position.z;
+            const Mask near = dx * dx + (dy * dy + dz * dz) <= kRoughnessRadius * kRoughnessRadius;
+            const Lanes cosine = cell.direction.x() * direction.x +
+                                 (cell.direction.y() * direction.y + cell.direction.z() * direction.z);
+            const Mask same_sheet = near & ~(cosine < kSheetCosine);
+            ball_sum.add_where(near, cell.normal_sum);
+            ball_area += where(near, cell.area);
+            triangles += where(near, cell.triangles);
+            sheet_sum.add_where(same_sheet, cell.normal_sum);
+            sheet_area += where(same_sheet, cell.area);
+        }
+    }
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+        const float ball = normal_spread(ball_sum[i], ball_area[i]);
+        // A cell whose normals cancel has no direction and no sheet.
+        const float sheet = sheet_area[i] > 0 ? normal_spread(sheet_sum[i], sheet_area[i]) : ball;
+        out[i] = {ball, sheet, triangles[i] * kDisk / ball_area[i]};
+    }
+}
+
+std::vector<Neighbourhood> look_around_cells(const SurfaceGrid& grid) {
+    std::vector<Neighbourhood> around(grid.cells.size());
+    tbb::parallel_for(std::size_t{0}, grid.block_begin.size() - 1, [&](std::size_t block) {
+        const std::uint32_t last = grid.block_begin[block + 1];
+        if (grid.block_begin[block] == last) return;
+        const auto runs = runs_around(grid, block);
+        for (std::size_t first = grid.block_begin[block]; first < last; first += kLanes) {
+            const std::size_t count = std::min(kLanes, last - first);
+            look_around(runs, {grid.cells.data() + first, count}, around.data() + first);
+        }
     });
-    // A cell whose normals cancel has no direction and no sheet.
-    const float sheet = sheet_area > 0 ? normal_spread(sheet_sum, sheet_area) : normal_spread(ball_sum, ball_area);
-    return {normal_spread(ball_sum, ball_area), sheet, triangles * kDisk / ball_area};
+    return around;
 }
 
 }  // namespace
 
 FaceRoughness measure_roughness(const IndexedMesh& mesh, const FaceGraph& faces) {
     const SurfaceGrid grid = build_grid(mesh, faces);
-    std::vector<Neighbourhood> around(grid.cells.size());
-    tbb::parallel_for(std::size_t{0}, grid.cells.size(),
-                      [&](std::size_t c) { around[c] = look_around(grid, grid.cells[c]); });
-
+    const std::vector<Neighbourhood> around = look_around_cells(grid);
     FaceRoughness result;
     for (auto* values : {&result.ball, &result.sheet, &result.triangles})
         values->resize(faces.size());

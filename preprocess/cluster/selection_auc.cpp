@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <tuple>
 
 namespace splice {
 namespace {
@@ -37,7 +39,7 @@ std::vector<Point> spread_points(const IndexedMesh& mesh, const FaceGraph& faces
         passed += static_cast<double>(faces.area[s]);
         while (points.size() < count && (static_cast<double>(points.size()) + 0.5) * step < passed) {
             const auto i = static_cast<double>(points.size());
-            double u = std::fmod(0.5 + i * 0.7548776662466927, 1.0), v = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
+            double u = fraction(0.5 + i * 0.7548776662466927), v = fraction(0.5 + i * 0.5698402909980532);
             if (u + v > 1) u = 1 - u, v = 1 - v;
             const auto [a, b, c] = faces.corners(mesh, s);
             points.push_back(
@@ -72,26 +74,29 @@ struct PointGrid {
             entries[next[block_of(p.position)]++] = {p.position, faces.normal[p.slot]};
     }
 
-    template <class Visit>
-    void for_each_within_radius(const Vec3f& p, const Visit& visit) const {
+    /// The normals of the points within the radius, in `buffer`.
+    std::span<const Vec3f> normals_around(const Vec3f& p, std::vector<Vec3f>& buffer) const {
         const auto low = [](std::size_t i) { return i == 0 ? i : i - 1; };
         const auto high = [](std::size_t i) { return std::min(i + 1, kSide - 1); };
         const std::size_t x = block(p.x()), y = block(p.y()), z = block(p.z());
+        std::size_t count = 0;
         for (std::size_t bz = low(z); bz <= high(z); ++bz) {
             for (std::size_t by = low(y); by <= high(y); ++by) {
-                const std::uint32_t last = begin[index(high(x), by, bz) + 1];
-                for (std::uint32_t i = begin[index(low(x), by, bz)]; i < last; ++i) {
-                    const bool near = (entries[i].position - p).squaredNorm() <= kRoughnessRadius * kRoughnessRadius;
-                    if (near) visit(entries[i]);
+                const std::uint32_t first = begin[index(low(x), by, bz)], last = begin[index(high(x), by, bz) + 1];
+                if (buffer.size() < count + (last - first)) buffer.resize(count + (last - first));
+                // Whether a point is near cannot be foretold: written in any case, a far one is overwritten.
+                for (std::uint32_t i = first; i < last; ++i) {
+                    buffer[count] = entries[i].normal;
+                    count += (entries[i].position - p).squaredNorm() <= kRoughnessRadius * kRoughnessRadius;
                 }
             }
         }
+        return {buffer.data(), count};
     }
 };
 
-float roughness_at(const Vec3f& centre, const PointGrid& grid, std::vector<Vec3f>& normals) {
-    normals.clear();
-    grid.for_each_within_radius(centre, [&](const PointGrid::Entry& e) { normals.push_back(e.normal); });
+float roughness_at(const Vec3f& centre, const PointGrid& grid, std::vector<Vec3f>& buffer) {
+    const std::span<const Vec3f> normals = grid.normals_around(centre, buffer);
     Vec3f mean = Vec3f::Zero();
     for (const Vec3f& n : normals)
         mean += n;
@@ -104,21 +109,36 @@ float roughness_at(const Vec3f& centre, const PointGrid& grid, std::vector<Vec3f
     return std::sqrt(sum / static_cast<float>(normals.size()));
 }
 
-struct Compared {
-    float roughness;
-    bool surfel;
-};
+}  // namespace
 
-/// The area under the receiver operating characteristic, by the rank sum.
-double area_under_curve(std::vector<Compared> compared) {
-    std::sort(compared.begin(), compared.end(),
-              [](const Compared& a, const Compared& b) { return a.roughness < b.roughness; });
+std::vector<JudgedPlace> judge_places(const IndexedMesh& mesh, const FaceGraph& faces) {
+    const std::vector<Point> points = spread_points(mesh, faces);
+    const PointGrid grid(faces, points);
+    std::vector<JudgedPlace> places((points.size() + kEvery - 1) / kEvery);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
+        std::vector<Vec3f> buffer;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const Point& p = points[i * kEvery];
+            places[i] = {roughness_at(p.position, grid, buffer), faces.face_of_slot[p.slot]};
+        }
+    });
+    std::sort(places.begin(), places.end(), [](const JudgedPlace& a, const JudgedPlace& b) {
+        return std::tuple(a.roughness, a.face) < std::tuple(b.roughness, b.face);
+    });
+    return places;
+}
+
+double selection_auc(const std::vector<JudgedPlace>& places, const PatchSet& patches) {
+    // The area under the receiver operating characteristic, by the rank sum.
+    const auto is_surfel = [&](const JudgedPlace& place) {
+        const ClusterPatch& patch = patches.patches[patches.triangle_patch[place.face]];
+        return patch.representation == format::Representation::kSurfels;
+    };
     double triangles_below = 0, surfels = 0, won = 0;
-    for (auto first = compared.begin(); first != compared.end();) {
+    for (auto first = places.begin(); first != places.end();) {
         const auto last =
-            std::find_if(first, compared.end(), [&](const Compared& c) { return c.roughness != first->roughness; });
-        const auto tied_surfels =
-            static_cast<double>(std::count_if(first, last, [](const Compared& c) { return c.surfel; }));
+            std::find_if(first, places.end(), [&](const JudgedPlace& p) { return p.roughness != first->roughness; });
+        const auto tied_surfels = static_cast<double>(std::count_if(first, last, is_surfel));
         const auto tied_triangles = static_cast<double>(last - first) - tied_surfels;
         won += tied_surfels * (triangles_below + tied_triangles / 2);
         triangles_below += tied_triangles;
@@ -126,26 +146,6 @@ double area_under_curve(std::vector<Compared> compared) {
         first = last;
     }
     return triangles_below * surfels > 0 ? won / (triangles_below * surfels) : 0.5;
-}
-
-}  // namespace
-
-double measure_selection_auc(const IndexedMesh& mesh, const FaceGraph& faces, const PatchSet& patches) {
-    const auto is_surfel = [](const ClusterPatch& p) { return p.representation == format::Representation::kSurfels; };
-    const auto surfels = std::count_if(patches.patches.begin(), patches.patches.end(), is_surfel);
-    if (surfels == 0 || surfels == std::ssize(patches.patches)) return 0.5;
-    const std::vector<Point> points = spread_points(mesh, faces);
-    const PointGrid grid(faces, points);
-    std::vector<Compared> compared((points.size() + kEvery - 1) / kEvery);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, compared.size()), [&](const auto& range) {
-        std::vector<Vec3f> normals;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const Point& p = points[i * kEvery];
-            compared[i] = {roughness_at(p.position, grid, normals),
-                           is_surfel(patches.patches[patches.triangle_patch[faces.face_of_slot[p.slot]]])};
-        }
-    });
-    return area_under_curve(std::move(compared));
 }
 
 }  // namespace splice

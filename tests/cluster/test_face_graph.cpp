@@ -1,4 +1,5 @@
 #include "preprocess/cluster/face_graph.h"
+#include "preprocess/cluster/radix_sort.h"
 #include "preprocess/mesh/shapes.h"
 #include "tests/cluster/cluster_fixture.h"
 
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <random>
 
 using namespace splice;
 using namespace splice::test;
@@ -47,7 +49,7 @@ const std::vector<Vec3d> kFivePoints{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
 TEST_CASE("Each edge with two faces pairs them") {
     for (const IndexedMesh& mesh : {random_blob(10, 1), repaired(shapes::torus_knot(2, 3, 60, 6)),
                                     repaired(shapes::terrain(9)), repaired(shapes::machined_part(8))}) {
-        const FaceAdjacency adjacency = find_face_adjacency(mesh, order_faces(mesh).face_of_slot);
+        const FaceAdjacency adjacency = find_face_adjacency(mesh, order_faces(mesh));
         CHECK(pairs_of(adjacency) == pairs_by_edges(mesh));
         CHECK(adjacency.detached_faces == 0);
     }
@@ -57,7 +59,7 @@ TEST_CASE("Faces around a non-manifold edge are kept and the edge is a border") 
     // Three and four faces around the edge 0-1, in turn.
     const std::vector<Triangle> fan{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
     const IndexedMesh three = bare_mesh(kFivePoints, fan);
-    const FaceAdjacency adjacency = find_face_adjacency(three, order_faces(three).face_of_slot);
+    const FaceAdjacency adjacency = find_face_adjacency(three, order_faces(three));
     CHECK(adjacency.pairs.empty());
     CHECK(adjacency.detached_faces > 0);
     CHECK(order_faces(three).size() == 3);
@@ -65,12 +67,12 @@ TEST_CASE("Faces around a non-manifold edge are kept and the edge is a border") 
     std::vector<Vec3d> six = kFivePoints;
     six.emplace_back(0.4, -1, 0.7);
     const IndexedMesh four = bare_mesh(six, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {1, 0, 5}, {1, 2, 3}});
-    CHECK(pairs_of(find_face_adjacency(four, order_faces(four).face_of_slot)) == pairs_by_edges(four));
+    CHECK(pairs_of(find_face_adjacency(four, order_faces(four))) == pairs_by_edges(four));
 }
 
 TEST_CASE("Faces of opposite orientation are paired all the same") {
     const IndexedMesh flipped = bare_mesh(kFivePoints, {{0, 1, 2}, {0, 1, 3}});
-    CHECK(pairs_of(find_face_adjacency(flipped, order_faces(flipped).face_of_slot)) == Pairs{{0, 1}});
+    CHECK(pairs_of(find_face_adjacency(flipped, order_faces(flipped))) == Pairs{{0, 1}});
 }
 
 TEST_CASE("A Moebius strip has no seam") {
@@ -91,7 +93,7 @@ TEST_CASE("A Moebius strip has no seam") {
         triangles.push_back({c, b, d});
     }
     const IndexedMesh strip = bare_mesh(positions, triangles);
-    const Pairs pairs = pairs_of(find_face_adjacency(strip, order_faces(strip).face_of_slot));
+    const Pairs pairs = pairs_of(find_face_adjacency(strip, order_faces(strip)));
     CHECK(pairs == pairs_by_edges(strip));
     CHECK(pairs.size() == triangles.size());
 }
@@ -99,19 +101,18 @@ TEST_CASE("A Moebius strip has no seam") {
 TEST_CASE("Two fans that share a vertex stay apart") {
     const IndexedMesh bowtie =
         bare_mesh({{0, 0, 0}, {1, 0.5, 0}, {1, -0.5, 0}, {-1, 0.5, 0}, {-1, -0.5, 0}}, {{0, 2, 1}, {0, 3, 4}});
-    CHECK(find_face_adjacency(bowtie, order_faces(bowtie).face_of_slot).pairs.empty());
+    CHECK(find_face_adjacency(bowtie, order_faces(bowtie)).pairs.empty());
 }
 
 TEST_CASE("Links never cross materials") {
     IndexedMesh mesh = repaired(shapes::cube(4));
-    const std::size_t all =
-        link_faces(mesh, order_faces(mesh), find_face_adjacency(mesh, order_faces(mesh).face_of_slot)).size();
+    const std::size_t all = link_faces(mesh, order_faces(mesh), find_face_adjacency(mesh, order_faces(mesh))).size();
     mesh.materials.resize(2);
     mesh.triangle_material.assign(mesh.triangles.size(), 0);
     for (std::size_t f = 0; f < mesh.triangles.size(); f += 2)
         mesh.triangle_material[f] = 1;
-    const FaceGraph faces = order_faces(mesh);
-    const auto links = link_faces(mesh, faces, find_face_adjacency(mesh, order_faces(mesh).face_of_slot));
+    const FaceGraph faces = measure_faces(mesh, order_faces(mesh));
+    const auto links = link_faces(mesh, faces.face_of_slot, find_face_adjacency(mesh, order_faces(mesh)));
     CHECK(links.size() < all);
     for (const FaceGraph::Link& l : links) {
         CHECK(mesh.triangle_material[faces.face_of_slot[l.slot[0]]] ==
@@ -121,7 +122,7 @@ TEST_CASE("Links never cross materials") {
 
 TEST_CASE("Slots are a permutation of the faces with their measures") {
     const IndexedMesh mesh = random_blob(8, 2);
-    const FaceGraph faces = order_faces(mesh);
+    const FaceGraph faces = measure_faces(mesh, order_faces(mesh));
     std::vector<std::uint32_t> sorted = faces.face_of_slot;
     std::sort(sorted.begin(), sorted.end());
     for (std::uint32_t f = 0; f < sorted.size(); ++f)
@@ -135,4 +136,21 @@ TEST_CASE("Slots are a permutation of the faces with their measures") {
         CHECK(static_cast<double>(faces.area[s]) == Approx(std::sqrt(h * (h - x) * (h - y) * (h - z))).epsilon(1e-3));
         CHECK(faces.normal[s].dot(b - a) == Approx(0).margin(1e-5));
     }
+}
+
+TEST_CASE("A radix sort orders by the high half and keeps equal ones in their order") {
+    std::mt19937_64 random(3);
+    for (const std::uint64_t high_mask : {0xffffffffull, 0xf00000ffull, 0x7ull, 0x0ull}) {
+        std::vector<std::uint64_t> entries(5000);
+        for (std::uint64_t& entry : entries)
+            entry = ((random() & high_mask) << 32) | (random() & 0xffffu);
+        std::vector<std::uint64_t> expected = entries;
+        std::stable_sort(expected.begin(), expected.end(),
+                         [](std::uint64_t a, std::uint64_t b) { return a >> 32 < b >> 32; });
+        radix_sort_by_high_half(entries);
+        REQUIRE(entries == expected);
+    }
+    std::vector<std::uint64_t> none;
+    radix_sort_by_high_half(none);
+    REQUIRE(none.empty());
 }

@@ -69,19 +69,19 @@ TEST_CASE("A machined part keeps its triangles") {
 
 TEST_CASE("Roughness is zero on a plane, known on a sphere and on an edge") {
     const IndexedMesh plane = repaired(shapes::checkerboard(2, 100));
-    const FaceRoughness flat = measure_roughness(plane, order_faces(plane));
+    const FaceRoughness flat = measure_roughness(plane, measure_faces(plane, order_faces(plane)));
     CHECK(*std::max_element(flat.ball.begin(), flat.ball.end()) < 1e-3f);
 
     // Within a ball of radius r on a sphere of radius R normals spread by r / (R sqrt 2): the RMS distance from the
     // centre of a disk is r / sqrt 2.
     const IndexedMesh sphere = repaired(shapes::ico_sphere(80));
-    const FaceRoughness round = measure_roughness(sphere, order_faces(sphere));
+    const FaceRoughness round = measure_roughness(sphere, measure_faces(sphere, order_faces(sphere)));
     const double mean =
         std::accumulate(round.ball.begin(), round.ball.end(), 0.0) / static_cast<double>(round.ball.size());
     CHECK(mean == Approx(0.02 / (0.5 * std::sqrt(2))).epsilon(0.1));
 
     const IndexedMesh cube = repaired(shapes::cube(100));
-    const FaceGraph faces = order_faces(cube);
+    const FaceGraph faces = measure_faces(cube, order_faces(cube));
     const FaceRoughness edges = measure_roughness(cube, faces);
     std::size_t on_edge = 0;
     for (std::size_t s = 0; s < faces.size(); ++s) {
@@ -100,7 +100,7 @@ TEST_CASE("Roughness is zero on a plane, known on a sphere and on an edge") {
 TEST_CASE("The number of triangles on a disk follows the size of the triangles") {
     for (const std::uint32_t cells : {20u, 50u, 100u}) {
         const IndexedMesh mesh = repaired(shapes::checkerboard(2, cells));
-        const FaceRoughness roughness = measure_roughness(mesh, order_faces(mesh));
+        const FaceRoughness roughness = measure_roughness(mesh, measure_faces(mesh, order_faces(mesh)));
         const double expected = std::numbers::pi * 0.02 * 0.02 * 2 * cells * cells;
         for (const float n : roughness.triangles)
             CHECK(static_cast<double>(n) == Approx(expected).epsilon(0.35));
@@ -182,7 +182,7 @@ TEST_CASE("The AUC is 1 for a perfect choice, 0 for its opposite, one half by lo
         }
     }
     const IndexedMesh mesh = bare_mesh(positions, triangles);
-    const FaceGraph faces = order_faces(mesh);
+    const FaceGraph faces = measure_faces(mesh, order_faces(mesh));
     // Two patches, whatever their shape: the AUC only asks for the representation at a point.
     const auto auc = [&](const auto& is_surfel) {
         PatchSet set;
@@ -190,7 +190,7 @@ TEST_CASE("The AUC is 1 for a perfect choice, 0 for its opposite, one half by lo
         set.patches[1].representation = format::Representation::kSurfels;
         for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
             set.triangle_patch.push_back(is_surfel(f));
-        return measure_selection_auc(mesh, faces, set);
+        return selection_auc(judge_places(mesh, faces), set);
     };
     const auto right = [&](std::uint32_t f) { return mesh.positions[mesh.triangles[f][0]].x() > 0; };
     CHECK(auc(right) > 0.98);
@@ -199,5 +199,5 @@ TEST_CASE("The AUC is 1 for a perfect choice, 0 for its opposite, one half by lo
     PatchSet one_kind;
     one_kind.patches.resize(1);
     one_kind.triangle_patch.resize(mesh.triangles.size(), 0);
-    CHECK(measure_selection_auc(mesh, faces, one_kind) == 0.5);
+    CHECK(selection_auc(judge_places(mesh, faces), one_kind) == 0.5);
 }

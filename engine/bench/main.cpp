@@ -1,6 +1,8 @@
-// splice-bench: measures the bake, the frames and their truth. Not a test: figures depend on the machine.
+// splice-bench: measures the bake, the frames and their truth, and the render graph. Not a test: figures depend on the
+// machine.
 #include "engine/bench/bench_bake.h"
 #include "engine/bench/bench_quality.h"
+#include "engine/bench/graph/graph_command.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
@@ -74,7 +76,9 @@ void parse_size(CommandLine& line) {
 int run(int argc, char** argv) {
     CommandLine line;
     line.folder = default_folder();
-    CLI::App app("Measures splice: bake times and memory, frame times, truth and holes against a ray-cast reference.");
+    CLI::App app(
+        "Measures splice: bake times and memory, frame times, truth and holes against a ray-cast reference, the render "
+        "graph.");
     app.require_subcommand(1);
 
     CLI::App& bake = *app.add_subcommand("bake", "Seconds a stage, peak memory and results of splice-bake");
@@ -115,7 +119,14 @@ int run(int argc, char** argv) {
         .add_option("--representation", holes_line.quality.bake.cluster.representation, "hybrid, triangles or surfels")
         ->transform(CLI::CheckedTransformer(representations).description(""));
 
+    bench::GraphCommand graph_command;
+    const CLI::App& graph = bench::add_graph_command(app, graph_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (graph.parsed()) {
+        bench::run_graph_command(graph_command);
+        return 0;
+    }
 
     nlohmann::json report;
     fs::path report_file;

@@ -8,6 +8,7 @@
 //   Frame frame = renderer.render(scene_of(model), settings);
 #pragma once
 
+#include "engine/render_graph/export/export.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
@@ -16,6 +17,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,7 @@ struct CaptureSettings {
     bool prefilter = true;                            // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
     bool want_depth = false;                          // fill Frame::depth
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
+    std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
     bool force_quads = false;                         // draw every surfel as an oriented quad, none as a point sprite
 };
@@ -61,6 +64,7 @@ struct Frame {
     std::vector<std::uint8_t> coverage;  // one a pixel: 255 where a surface is, else 0
     std::vector<float> depth;            // with want_depth: distance along the view axis to the surface itself (epsilon
                                          // taken off), world units; infinite where there is none
+    std::string graph;                   // with want_graph: the frame's render graph and its plan
     FrameStats stats;
 };
 

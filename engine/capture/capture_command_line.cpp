@@ -108,8 +108,8 @@ std::string view_help() {
 
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
-    std::string input, output, stats, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, background,
-        epsilon_scale, prefilter;
+    std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view,
+        background, epsilon_scale, prefilter;
     bool one_sided = false, two_sided = false;
 };
 
@@ -135,6 +135,11 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
     if (!raw.prefilter.empty()) command.prefilter = parse_switch(raw.prefilter, "--prefilter");
     if (!raw.stats.empty()) command.stats = raw.stats;
+    if (!raw.graph.empty()) {
+        if (!graph::export_format_of(raw.graph))
+            throw UsageError("--graph: expected a file that ends in .dot, .mmd or .json, got \"" + raw.graph + "\"");
+        command.graph = raw.graph;
+    }
     if (raw.one_sided && raw.two_sided) throw UsageError("--one-sided and --two-sided exclude each other");
     if (raw.one_sided) command.sides = Sides::kOneSided;
     if (raw.two_sided) command.sides = Sides::kTwoSided;
@@ -191,6 +196,11 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
         ->option_text("on|off");
     app.add_option("--stats", raw.stats,
                    "Write times and counts as JSON; the frame is rendered twice, the second timed")
+        ->option_text("FILE");
+    app.add_option(
+           "--graph", raw.graph,
+           "Write the frame's render graph, as declared and as compiled; the extension says how: Graphviz (.dot), "
+           "Mermaid (.mmd) or JSON (.json)")
         ->option_text("FILE");
     app.add_flag("--validate", command.renderer.validate,
                  "Run with the Vulkan validation layers; any message fails the run");

@@ -27,6 +27,7 @@ struct CaptureCommand {
     std::optional<double> epsilon_scale;
     std::optional<bool> prefilter;
     std::optional<std::filesystem::path> stats;
+    std::optional<std::filesystem::path> graph;  // ends in .dot, .mmd or .json
     bool quiet = false;
 };
 

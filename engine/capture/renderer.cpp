@@ -139,6 +139,8 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
     const std::size_t texels = std::size_t{settings.width} * settings.height;
     frame.coverage.resize(texels);
     const std::vector<std::byte> raw = engine.render_raw(scene, settings, camera, settings.view, &frame.stats);
+    if (settings.want_graph)
+        frame.graph = graph::export_graph(engine.graph, engine.executor.plan(), *settings.want_graph);
     const Background& background = scene.background;
     if (is_numeric(settings.view)) {
         const std::vector<float> values = floats_of(raw);

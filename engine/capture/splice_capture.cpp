@@ -36,6 +36,7 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.epsilon_scale = command.epsilon_scale.value_or(scene.epsilon_scale);
     settings.prefilter = command.prefilter.value_or(scene.prefilter);
     settings.want_overlap = command.stats.has_value();
+    if (command.graph) settings.want_graph = graph::export_format_of(command.graph->string());
     return settings;
 }
 
@@ -49,6 +50,7 @@ void check_validation(const Renderer& renderer) {
 int capture(const CaptureCommand& command) {
     check_output_path(command.output);
     if (command.stats) check_output_path(*command.stats);
+    if (command.graph) check_output_path(*command.graph);
     Renderer renderer(command.renderer);
     const LoadedScene loaded = load(command, renderer);
     CaptureSettings settings = settings_of(command, loaded.description);
@@ -61,6 +63,7 @@ int capture(const CaptureCommand& command) {
         // The first frame of a process compiles shaders, which says nothing about frames.
         if (command.stats && i == 0) frame = renderer.render(loaded.scene, settings);
         check_validation(renderer);
+        if (command.graph && i == 0) write_text_file(*command.graph, frame.graph);
         const std::filesystem::path path =
             command.orbit > 0 ? numbered(command.output, i, cameras.size()) : command.output;
         write_png(path, {frame.width, frame.height, std::move(frame.rgba)});

@@ -1,24 +1,13 @@
 #include "engine/render_graph/graph.h"
 
+#include <cstring>
+
 namespace splice::graph {
 namespace {
 
 constexpr VkPipelineStageFlags kGraphicsShaders =
     VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
 constexpr VkPipelineStageFlags kComputeShader = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
-
-bool has_shader_stages(AccessKind kind) {
-    switch (kind) {
-        case AccessKind::sampled:
-        case AccessKind::storage_read:
-        case AccessKind::storage_write:
-        case AccessKind::storage_read_write:
-        case AccessKind::uniform:
-            return true;
-        default:
-            return false;
-    }
-}
 
 bool allowed(AccessKind kind, PassKind pass) {
     switch (kind) {
@@ -35,6 +24,23 @@ bool allowed(AccessKind kind, PassKind pass) {
         default:
             return pass != PassKind::transfer;
     }
+}
+
+/// The kinds of passes that may use a resource so: "a graphics pass".
+std::string allowed_passes(AccessKind kind) {
+    std::string text;
+    for (const PassKind pass : {PassKind::graphics, PassKind::compute, PassKind::transfer}) {
+        if (allowed(kind, pass)) text += (text.empty() ? "a " : " or a ") + std::string(describe(pass)) + " pass";
+    }
+    return text;
+}
+
+VkPipelineStageFlags shaders_of(PassKind kind) {
+    return kind == PassKind::compute
+               ? VkPipelineStageFlags{VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT}
+               : VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_TESSELLATION_CONTROL_SHADER_BIT |
+                     VK_PIPELINE_STAGE_TESSELLATION_EVALUATION_SHADER_BIT | VK_PIPELINE_STAGE_GEOMETRY_SHADER_BIT |
+                     VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
 }
 
 }  // namespace
@@ -62,7 +68,15 @@ std::string quote_resource(const Graph& graph, uint32_t resource) {
     return (image ? "image '" : "buffer '") + graph.resource_name(resource) + "'";
 }
 
-uint32_t Graph::add_resource(std::string_view name, const ResourceDeclaration& declaration) {
+bool operator==(const Declaration& a, const Declaration& b) {
+    const auto same_bytes = []<typename T>(const std::vector<T>& x, const std::vector<T>& y) {
+        return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(T)) == 0);
+    };
+    return same_bytes(a.accesses, b.accesses) && same_bytes(a.resources, b.resources) && a.passes == b.passes &&
+           a.imports == b.imports;
+}
+
+uint32_t Graph::add_resource(std::string_view name, ResourceDeclaration declaration, const ImportOptions* import) {
     const ImageDescription& image = declaration.image;
     if (declaration.kind == ResourceKind::image && (image.format == VK_FORMAT_UNDEFINED || image.width == 0 ||
                                                     image.height == 0 || image.layers == 0 || image.mip_levels == 0)) {
@@ -71,46 +85,67 @@ uint32_t Graph::add_resource(std::string_view name, const ResourceDeclaration& d
     if (declaration.kind == ResourceKind::buffer && declaration.buffer.size == 0) {
         throw GraphError("buffer '" + std::string(name) + "': needs at least 1 byte");
     }
+    ResourceState state;
+    if (import) {
+        declaration.imported = true;
+        declaration.import = static_cast<uint32_t>(declaration_.imports.size());
+        declaration_.imports.push_back(*import);
+        for (const ExternalUse& use : {import->before, import->after}) {
+            key_.resources.add(use.scope.stages);
+            key_.resources.add(use.scope.access);
+            key_.resources.add(static_cast<uint64_t>(use.layout));
+        }
+        key_.resources.add(import->wanted ? 1 : 0);
+        state.has_contents =
+            declaration.kind == ResourceKind::buffer || import->before.layout != VK_IMAGE_LAYOUT_UNDEFINED;
+    }
     const auto index = static_cast<uint32_t>(declaration_.resources.size());
     declaration_.resources.push_back(declaration);
+    key_.resources.add_bytes(declaration);
     resource_names_.emplace_back(name);
-    ResourceState state;
-    state.has_contents = declaration.imported && (declaration.kind == ResourceKind::buffer ||
-                                                  declaration.import.before.layout != VK_IMAGE_LAYOUT_UNDEFINED);
+    initial_values_.emplace_back();
     states_.push_back(state);
     return index;
 }
 
+/// Adds both halves and returns the first.
+uint32_t Graph::add_history(std::string_view name, ResourceDeclaration declaration, const VkClearValue& initial) {
+    declaration.history = HistoryRole::previous;
+    const uint32_t previous = add_resource(std::string(name) + " of the last frame", declaration);
+    states_[previous].has_contents = true;
+    initial_values_[previous] = initial;
+    declaration.history = HistoryRole::current;
+    add_resource(name, declaration);
+    return previous;
+}
+
 ImageHandle Graph::create_image(std::string_view name, const ImageDescription& description) {
-    ResourceDeclaration declaration;
-    declaration.image = description;
-    return {add_resource(name, declaration), 0};
+    return {add_resource(name, {.image = description}), 0};
 }
 
 BufferHandle Graph::create_buffer(std::string_view name, const BufferDescription& description) {
-    ResourceDeclaration declaration;
-    declaration.kind = ResourceKind::buffer;
-    declaration.buffer = description;
-    return {add_resource(name, declaration), 0};
+    return {add_resource(name, {.buffer = description, .kind = ResourceKind::buffer}), 0};
 }
 
 ImageHandle Graph::import_image(std::string_view name, const ImageDescription& description,
                                 const ImportOptions& options) {
-    ResourceDeclaration declaration;
-    declaration.imported = true;
-    declaration.image = description;
-    declaration.import = options;
-    return {add_resource(name, declaration), 0};
+    return {add_resource(name, {.image = description}, &options), 0};
 }
 
 BufferHandle Graph::import_buffer(std::string_view name, const BufferDescription& description,
                                   const ImportOptions& options) {
-    ResourceDeclaration declaration;
-    declaration.kind = ResourceKind::buffer;
-    declaration.imported = true;
-    declaration.buffer = description;
-    declaration.import = options;
-    return {add_resource(name, declaration), 0};
+    return {add_resource(name, {.buffer = description, .kind = ResourceKind::buffer}, &options), 0};
+}
+
+ImageHistory Graph::create_history_image(std::string_view name, const ImageDescription& description,
+                                         const VkClearValue& initial) {
+    const uint32_t previous = add_history(name, {.image = description}, initial);
+    return {{previous, 0}, {previous + 1, 0}};
+}
+
+BufferHistory Graph::create_history_buffer(std::string_view name, const BufferDescription& description) {
+    const uint32_t previous = add_history(name, {.buffer = description, .kind = ResourceKind::buffer}, {});
+    return {{previous, 0}, {previous + 1, 0}};
 }
 
 Pass Graph::add_pass(std::string_view name, PassKind kind) {
@@ -118,6 +153,7 @@ Pass Graph::add_pass(std::string_view name, PassKind kind) {
     pass.kind = kind;
     pass.first_access = static_cast<uint32_t>(declaration_.accesses.size());
     declaration_.passes.push_back(pass);
+    key_.passes.add(static_cast<uint64_t>(kind));
     pass_names_.emplace_back(name);
     functions_.emplace_back();
     return {this, static_cast<uint32_t>(declaration_.passes.size() - 1)};
@@ -127,16 +163,14 @@ void Graph::clear() {
     declaration_.passes.clear();
     declaration_.resources.clear();
     declaration_.accesses.clear();
+    declaration_.imports.clear();
+    key_ = {};
     states_.clear();
     clear_values_.clear();
+    initial_values_.clear();
     functions_.clear();
     pass_names_.clear();
     resource_names_.clear();
-}
-
-std::span<const Access> Graph::accesses(uint32_t pass) const {
-    const PassDeclaration& declared = declaration_.passes[pass];
-    return std::span(declaration_.accesses).subspan(declared.first_access, declared.access_count);
 }
 
 void Graph::fail(uint32_t pass, uint32_t resource, const std::string& problem) const {
@@ -156,16 +190,18 @@ uint32_t Graph::add_access(uint32_t pass, ResourceKind resource_kind, uint32_t r
     PassDeclaration& declared = open_pass(pass);
     if (resource >= declaration_.resources.size() || declaration_.resources[resource].kind != resource_kind) {
         throw GraphError("pass '" + pass_names_[pass] + "': uses a handle that no " +
-                         (resource_kind == ResourceKind::image ? "image" : "buffer") + " of this graph has");
+                         (resource_kind == ResourceKind::image ? "image" : "buffer") +
+                         " of this graph has; use one that this graph gave out since it was last cleared");
     }
     Access access{resource, version, kind, is_write(kind) ? contents.kind : ContentsKind::keep, 0};
-    if (has_shader_stages(kind)) {
+    if (traits_of(kind).shader) {
         const VkPipelineStageFlags own = declared.kind == PassKind::compute ? kComputeShader : kGraphicsShaders;
         access.stages = stages == 0 ? own : stages;
     }
     check_access(pass, access);
     const auto index = static_cast<uint32_t>(declaration_.accesses.size());
     declaration_.accesses.push_back(access);
+    key_.passes.add_bytes(access);
     clear_values_.push_back(contents.value);
     ++declared.access_count;
     ResourceState& state = states_[resource];
@@ -182,14 +218,26 @@ void Graph::check_access(uint32_t pass, const Access& access) const {
     const PassDeclaration& declared = declaration_.passes[pass];
     if (!allowed(access.kind, declared.kind)) {
         fail(pass, access.resource,
-             std::string("a ") + describe(declared.kind) + " pass cannot use " + describe(access.kind));
+             std::string("a ") + describe(declared.kind) + " pass cannot use " + describe(access.kind) +
+                 "; use it in " + allowed_passes(access.kind));
+    }
+    if ((access.stages & ~shaders_of(declared.kind)) != 0) {
+        fail(
+            pass, access.resource,
+            std::string("names shader stages that a ") + describe(declared.kind) + " pass does not have; name its own");
+    }
+    if (is_write(access.kind) && declaration_.resources[access.resource].history == HistoryRole::previous) {
+        fail(pass, access.resource, "is only read; write the current half of the history");
     }
     check_feedback(pass, access);
     const ResourceState& state = states_[access.resource];
     if (access.version != state.version) {
-        std::string problem = "stale handle";
-        if (access.version < state.version) problem += ": pass '" + pass_names_[state.last_writer] + "' has written it";
-        fail(pass, access.resource, problem + "; use the handle that the last write returned");
+        if (access.version > state.version) {
+            fail(pass, access.resource, "no pass has written these contents yet; add the writing pass before");
+        }
+        fail(pass, access.resource,
+             "stale handle: pass '" + pass_names_[state.last_writer] +
+                 "' has written it; use the handle that the last write returned");
     }
     check_contents(pass, access);
     check_format(pass, access);
@@ -213,12 +261,13 @@ void Graph::check_format(uint32_t pass, const Access& access) const {
     const bool depth = is_depth_stencil(resource.image.format);
     const bool wants_depth =
         access.kind == AccessKind::depth_stencil_attachment || access.kind == AccessKind::depth_stencil_read;
-    const bool wants_colour =
-        access.kind == AccessKind::colour_attachment || (image_usage(access.kind) & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
+    const bool wants_colour = access.kind == AccessKind::colour_attachment ||
+                              (traits_of(access.kind).image_usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
     if ((wants_depth && !depth) || (wants_colour && depth)) {
         fail(pass, access.resource,
              std::string("its format cannot be ") + describe(access.kind) +
-                 (depth ? "; it has depth or stencil" : "; it has no depth or stencil"));
+                 (depth ? ", as it has depth or stencil; create it with a colour format"
+                        : ", as it has no depth or stencil; create it with a format that has"));
     }
 }
 
@@ -246,7 +295,7 @@ void Graph::check_feedback(uint32_t pass, const Access& access) const {
             if (other.kind == AccessKind::depth_stencil_attachment || other.kind == AccessKind::depth_stencil_read) {
                 fail(pass, access.resource,
                      "a pass has one depth-stencil attachment at most, and it has " +
-                         quote_resource(*this, other.resource));
+                         quote_resource(*this, other.resource) + "; split the pass");
             }
         }
     }
@@ -323,7 +372,9 @@ BufferHandle Pass::transfer_write(BufferHandle buffer, Contents contents) {
 }
 
 void Pass::side_effect() {
-    graph_->open_pass(index_).side_effect = true;
+    PassDeclaration& pass = graph_->open_pass(index_);
+    if (!pass.side_effect) graph_->key_.side_effects.add(index_);
+    pass.side_effect = true;
 }
 
 void Pass::record(RecordFunction function) {

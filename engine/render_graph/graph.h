@@ -42,6 +42,7 @@
 #pragma once
 
 #include "engine/render_graph/access.h"
+#include "engine/render_graph/declaration_key.h"
 #include "engine/render_graph/error.h"
 
 #include <vulkan/vulkan_core.h>
@@ -51,6 +52,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace splice::graph {
@@ -70,6 +72,14 @@ struct BufferHandle {
     uint32_t resource = UINT32_MAX;
     uint32_t version = 0;
     friend bool operator==(const BufferHandle&, const BufferHandle&) = default;
+};
+
+/// Contents that live across frames: those of the last frame, and those that this frame makes.
+struct ImageHistory {
+    ImageHandle previous, current;
+};
+struct BufferHistory {
+    BufferHandle previous, current;
 };
 
 /// A 2D image. Every access covers all levels and layers.
@@ -203,6 +213,8 @@ struct Access {
     friend bool operator==(const Access&, const Access&) = default;
 };
 
+static_assert(std::has_unique_object_representations_v<Access>, "compared as bytes");
+
 struct PassDeclaration {
     PassKind kind = PassKind::graphics;
     bool side_effect = false;
@@ -211,16 +223,26 @@ struct PassDeclaration {
     friend bool operator==(const PassDeclaration&, const PassDeclaration&) = default;
 };
 
-enum class ResourceKind : uint8_t { image, buffer };
+enum class ResourceKind : uint16_t { image, buffer };
+
+/// The two halves of a history are declared one after the other.
+enum class HistoryRole : uint8_t {
+    none,
+    previous,  ///< what `current` held at the end of the frame before; only read
+    current,
+};
 
 struct ResourceDeclaration {
-    ResourceKind kind = ResourceKind::image;
-    bool imported = false;
     ImageDescription image = {};    ///< images
     BufferDescription buffer = {};  ///< buffers
-    ImportOptions import = {};      ///< imported resources
+    uint32_t import = UINT32_MAX;   ///< imported resources: into Declaration::imports
+    ResourceKind kind = ResourceKind::image;
+    bool imported = false;
+    HistoryRole history = HistoryRole::none;
+    bool transient() const { return !imported && history == HistoryRole::none; }
     friend bool operator==(const ResourceDeclaration&, const ResourceDeclaration&) = default;
 };
+static_assert(std::has_unique_object_representations_v<ResourceDeclaration>, "compared as bytes");
 
 /// The structure of a frame as plain data. Equal declarations compile to equal plans: names, clear values and record
 /// functions do not count.
@@ -228,7 +250,9 @@ struct Declaration {
     std::vector<PassDeclaration> passes;
     std::vector<ResourceDeclaration> resources;
     std::vector<Access> accesses;  ///< those of a pass are contiguous
-    friend bool operator==(const Declaration&, const Declaration&) = default;
+    std::vector<ImportOptions> imports;
+    const ImportOptions& import_of(uint32_t resource) const { return imports[resources[resource].import]; }
+    friend bool operator==(const Declaration& a, const Declaration& b);
 };
 
 class Graph {
@@ -241,16 +265,29 @@ class Graph {
     ImageHandle import_image(std::string_view name, const ImageDescription& description, const ImportOptions& options);
     BufferHandle import_buffer(std::string_view name, const BufferDescription& description,
                                const ImportOptions& options);
+    /// Contents that live across frames. `previous` holds what the last frame left in `current`; if this frame is the
+    /// first, or follows one of another declaration (another size, say), it holds `initial` (buffers: zeros). A frame
+    /// that reads `previous` must write `current`, and only `current`.
+    ImageHistory create_history_image(std::string_view name, const ImageDescription& description,
+                                      const VkClearValue& initial);
+    BufferHistory create_history_buffer(std::string_view name, const BufferDescription& description);
     Pass add_pass(std::string_view name, PassKind kind);
 
     /// Forgets everything, keeps the storage for the next frame's declaration.
     void clear();
 
     const Declaration& declaration() const { return declaration_; }
-    std::span<const Access> accesses(uint32_t pass) const;
+    /// Of the declaration: equal keys, equal declarations.
+    const DeclarationKey& key() const { return key_; }
+    std::span<const Access> accesses(uint32_t pass) const {
+        const PassDeclaration& declared = declaration_.passes[pass];
+        return {declaration_.accesses.data() + declared.first_access, declared.access_count};
+    }
     const std::string& pass_name(uint32_t pass) const { return pass_names_[pass]; }
     const std::string& resource_name(uint32_t resource) const { return resource_names_[resource]; }
     const VkClearValue& clear_value(uint32_t access) const { return clear_values_[access]; }
+    /// Of a history image.
+    const VkClearValue& initial_value(uint32_t resource) const { return initial_values_[resource]; }
     const RecordFunction& record_function(uint32_t pass) const { return functions_[pass]; }
 
   private:
@@ -261,7 +298,9 @@ class Graph {
         uint32_t last_writer = UINT32_MAX;  // pass
         uint32_t last_access = UINT32_MAX;  // index into Declaration::accesses
     };
-    uint32_t add_resource(std::string_view name, const ResourceDeclaration& declaration);
+    uint32_t add_resource(std::string_view name, ResourceDeclaration declaration,
+                          const ImportOptions* import = nullptr);
+    uint32_t add_history(std::string_view name, ResourceDeclaration declaration, const VkClearValue& initial);
     uint32_t add_access(uint32_t pass, ResourceKind resource_kind, uint32_t resource, uint32_t version, AccessKind kind,
                         const Contents& contents, VkPipelineStageFlags stages);
     PassDeclaration& open_pass(uint32_t pass);
@@ -272,9 +311,11 @@ class Graph {
     [[noreturn]] void fail(uint32_t pass, uint32_t resource, const std::string& problem) const;
 
     Declaration declaration_;
+    DeclarationKey key_;
     std::vector<ResourceState> states_;
-    std::vector<VkClearValue> clear_values_;  // one an access
-    std::vector<RecordFunction> functions_;   // one a pass
+    std::vector<VkClearValue> clear_values_;    // one an access
+    std::vector<VkClearValue> initial_values_;  // one a resource
+    std::vector<RecordFunction> functions_;     // one a pass
     std::vector<std::string> pass_names_, resource_names_;
 };
 

@@ -105,9 +105,12 @@ struct PlannedResource {
     VkBufferUsageFlags buffer_usage = 0;
     /// A transient image that lives in one render pass and is neither loaded nor stored: no memory needed on tilers.
     bool memoryless = false;
+    /// The previous half of a history image: the layout that it is in as the frame begins.
+    VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
     /// Place of a transient resource in the heap of its memory class; `none` when nothing was placed (see compile.h).
     uint32_t heap = none;  ///< into Plan::heaps
     uint64_t offset = 0;   ///< bytes
+    uint64_t size = 0;     ///< bytes; 0 when nothing was placed
     friend bool operator==(const PlannedResource&, const PlannedResource&) = default;
 };
 
@@ -165,6 +168,7 @@ struct Plan {
     std::vector<ImageBarrier> image_barriers;
     std::vector<BufferBarrier> buffer_barriers;
     BarrierBatch final_barriers;             ///< after the last group: imported resources to their use outside
+    bool batch_barriers = true;              ///< a batch is one command; false: each barrier is one
     std::vector<PlannedResource> resources;  ///< one a declared resource
     std::vector<Heap> heaps;
     std::vector<CulledPass> culled;
@@ -173,8 +177,8 @@ struct Plan {
 };
 
 /// The elements of a range: slice(plan.subpasses, render_pass.subpasses).
-template <typename T>
-std::span<const T> slice(const std::vector<T>& elements, Range range) {
+template <typename T, typename Allocator>
+std::span<const T> slice(const std::vector<T, Allocator>& elements, Range range) {
     return std::span<const T>(elements).subspan(range.first, range.count);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/vulkan/device.h"
+#include "engine/vulkan/format_aspects.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/memory.h"
 
@@ -12,8 +13,6 @@
 
 namespace splice::gpu {
 
-/// DEPTH and STENCIL as the format has them, else COLOR.
-VkImageAspectFlags format_aspects(VkFormat format);
 /// Bytes a texel of one aspect when copied to a buffer (D32_SFLOAT_S8_UINT: 4 for depth, 1 for stencil). Throws
 /// DeviceError for formats that the engine does not use.
 uint32_t texel_bytes(VkFormat format, VkImageAspectFlagBits aspect);

@@ -73,6 +73,33 @@ TEST_CASE("a model becomes a picture of the size asked for, with its statistics"
                                              "read_back"});
 }
 
+TEST_CASE("the frame's render graph is written in the form that the file's extension names") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const auto graph_as = [&](const std::string& name) {
+        const Outcome outcome =
+            capture(folder, {"a.splice", "-o", "a.png", "--size", "64x64", "--stats", "a.json", "--graph", name});
+        CHECK(outcome.exit_code == 0);
+        CHECK(outcome.err == "");
+        return read_text(folder / name);
+    };
+    const std::string dot = graph_as("graph.dot");
+    CHECK(dot.starts_with("digraph frame {"));
+    CHECK(dot.find("label=\"surfel_attribute\"") != std::string::npos);
+    const std::string mermaid = graph_as("graph.mmd");
+    CHECK(mermaid.starts_with("flowchart LR"));
+    CHECK(mermaid.find("[\"surfel_attribute\"]:::graphics") != std::string::npos);
+
+    // The picture's own frame, not the one that counts overlaps for the statistics: one render pass and a copy.
+    const auto json = nlohmann::json::parse(graph_as("graph.json"));
+    REQUIRE(json.at("passes").size() == 5);
+    CHECK(json.at("passes")[0].at("name") == "triangle");
+    CHECK(json.at("plan").at("groups").size() == 2);
+    CHECK(json.at("plan").at("groups")[0].at("passes") == nlohmann::json::parse("[0, 1, 2, 3]"));
+    CHECK(json.at("resources")[0].at("residence") == "imported");
+    CHECK(json.at("resources")[4].at("format") == "R8G8B8A8Unorm");
+}
+
 TEST_CASE("a mesh and a scene that names it make the same picture") {
     const TemporaryFolder folder;
     write_text(folder / "tetra.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
@@ -190,6 +217,8 @@ TEST_CASE("wrong usage is one line and exit code 2") {
         {{"a.splice", "-o", "b.png", "--prefilter", "maybe"}, "--prefilter: expected on or off"},
         {{"a.splice", "-o", "b.png", "--epsilon-scale", "-1"}, "--epsilon-scale: expected a number from 0 to 100"},
         {{"a.splice", "-o", "b.png", "--one-sided", "--two-sided"}, "exclude each other"},
+        {{"a.splice", "-o", "b.png", "--graph", "b.svg"},
+         "--graph: expected a file that ends in .dot, .mmd or .json, got \"b.svg\""},
         {{"a.splice", "-o", "b.png", "--device", "banana"}, "banana"},
     };
     for (const auto& [arguments, expected] : table) {

@@ -40,18 +40,26 @@ bool one_line(const std::string& text) {
 TEST_CASE("splice-bench --help names its commands and options") {
     const Outcome top = bench("--help");
     CHECK(top.exit_code == 0);
-    for (const char* word : {"bake", "capture", "holes"})
+    for (const char* word : {"bake", "capture", "holes", "graph"})
         CHECK(top.out.find(word) != std::string::npos);
     const Outcome holes = bench("holes --help");
     CHECK(holes.exit_code == 0);
     for (const char* word : {"--directions", "--size", "--json", "--pictures"})
         CHECK(holes.out.find(word) != std::string::npos);
+    const Outcome graph = bench("graph --help");
+    CHECK(graph.exit_code == 0);
+    for (const char* word : {"--families", "--sizes", "--seed", "--repeat", "--no-device", "--json", "--html", "--vs",
+                             "layered-local", "before.json"})
+        CHECK(graph.out.find(word) != std::string::npos);
 }
 
 TEST_CASE("splice-bench answers a wrong command line with one line and exit code 2") {
-    for (const char* arguments : {"", "no-such-command", "holes --directions 27", "holes --directions x",
-                                  "capture --size 0x5", "capture --size 12", "bake --runs 0", "bake no-such-file.obj",
-                                  "holes --representation points", "capture --triangle-share 2"}) {
+    for (const char* arguments :
+         {"", "no-such-command", "holes --directions 27", "holes --directions x", "capture --size 0x5",
+          "capture --size 12", "bake --runs 0", "bake no-such-file.obj", "holes --representation points",
+          "capture --triangle-share 2", "graph --sizes 3", "graph --sizes 64,x", "graph --repeat 0", "graph --seed -",
+          "graph --no-device --families tree", "graph --no-device --families frame", "graph --device nonsense",
+          "graph extra"}) {
         INFO(arguments);
         const Outcome outcome = bench(arguments);
         CHECK(outcome.exit_code == 2);
@@ -80,4 +88,42 @@ TEST_CASE("splice-bench reports a mesh that cannot be baked as a failure") {
     const Outcome outcome = bench("bake '" + (folder / "empty.obj").string() + "'");
     CHECK(outcome.exit_code == 1);
     CHECK(outcome.err.find("splice-bench: ") != std::string::npos);
+}
+
+TEST_CASE("splice-bench graph writes its figures and its page, and compares with an earlier run") {
+    const test::TemporaryFolder folder;
+    const std::string json = (folder / "report.json").string(), html = (folder / "report.html").string();
+    const std::string common = "graph --no-device --families chain,deferred --sizes 64,8 --repeat 2 --seed 3";
+    const Outcome first = bench(common + " --json '" + json + "' --html '" + html + "'");
+    INFO(first.err);
+    REQUIRE(first.exit_code == 0);
+    CHECK(first.err.empty());  // progress is for terminals
+    CHECK(first.out.find("deferred") != std::string::npos);
+    const auto report = nlohmann::json::parse(contents(folder / "report.json"));
+    REQUIRE(report["compile"].size() == 4);
+    CHECK(report["compile"][0]["passes"] == 8);
+    CHECK(report["seed"] == 3);
+    CHECK(contents(folder / "report.html").find("<svg") != std::string::npos);
+
+    const Outcome second = bench(common + " --vs '" + json + "'");
+    CHECK(second.exit_code == 0);
+    CHECK(second.out.find("figures moved") != std::string::npos);
+    // Counts do not depend on the machine.
+    for (const char* count : {": groups", ": barriers", ": placed bytes"})
+        CHECK(second.out.find(count) == std::string::npos);
+}
+
+TEST_CASE("splice-bench graph fails before it measures when a file cannot be used") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "other.json") << "{}";
+    for (const std::string& arguments :
+         {"--vs '" + (folder / "absent.json").string() + "'", "--vs '" + (folder / "other.json").string() + "'",
+          "--json '" + (folder / "no" / "such" / "folder.json").string() + "'",
+          "--html '" + folder.path().string() + "'"}) {
+        INFO(arguments);
+        const Outcome outcome = bench("graph --no-device " + arguments);
+        CHECK(outcome.exit_code == 1);
+        CHECK(one_line(outcome.err));
+        CHECK(outcome.out.empty());
+    }
 }

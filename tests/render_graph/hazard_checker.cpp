@@ -1,113 +1,15 @@
 #include "tests/render_graph/hazard_checker.h"
 
+#include "tests/render_graph/access_model.h"
+
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace splice::test {
 namespace {
 
 using graph::AccessKind;
 using graph::none;
-
-/// A stage and what it does there.
-struct Step {
-    VkPipelineStageFlags stage;
-    VkAccessFlags reads, writes;
-};
-
-constexpr VkPipelineStageFlags kColour = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-constexpr VkPipelineStageFlags kEarly = VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT;
-constexpr VkPipelineStageFlags kLate = VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-constexpr VkPipelineStageFlags kFragment = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
-
-std::vector<Step> shader_steps(VkPipelineStageFlags stages, VkAccessFlags reads, VkAccessFlags writes) {
-    std::vector<Step> steps;
-    for (VkPipelineStageFlags bit = 1; bit != 0; bit <<= 1) {
-        if ((stages & bit) != 0) steps.push_back({bit, reads, writes});
-    }
-    return steps;
-}
-
-std::vector<Step> steps_of(const graph::Access& access) {
-    constexpr VkAccessFlags shader_read = VK_ACCESS_SHADER_READ_BIT, shader_write = VK_ACCESS_SHADER_WRITE_BIT;
-    constexpr VkAccessFlags depth_read = VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
-    constexpr VkAccessFlags depth_write = VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-    switch (access.kind) {
-        case AccessKind::colour_attachment:
-            return {{kColour, VK_ACCESS_COLOR_ATTACHMENT_READ_BIT, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT}};
-        case AccessKind::depth_stencil_attachment:
-            return {{kEarly, depth_read, depth_write}, {kLate, depth_read, depth_write}};
-        case AccessKind::depth_stencil_read:
-            return {{kEarly, depth_read, 0}, {kLate, depth_read, 0}};
-        case AccessKind::input_attachment:
-            return {{kFragment, VK_ACCESS_INPUT_ATTACHMENT_READ_BIT, 0}};
-        case AccessKind::sampled:
-        case AccessKind::storage_read:
-            return shader_steps(access.stages, shader_read, 0);
-        case AccessKind::storage_write:
-            return shader_steps(access.stages, 0, shader_write);
-        case AccessKind::storage_read_write:
-            return shader_steps(access.stages, shader_read, shader_write);
-        case AccessKind::uniform:
-            return shader_steps(access.stages, VK_ACCESS_UNIFORM_READ_BIT, 0);
-        case AccessKind::vertex:
-            return {{VK_PIPELINE_STAGE_VERTEX_INPUT_BIT, VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT, 0}};
-        case AccessKind::index:
-            return {{VK_PIPELINE_STAGE_VERTEX_INPUT_BIT, VK_ACCESS_INDEX_READ_BIT, 0}};
-        case AccessKind::indirect:
-            return {{VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT, 0}};
-        case AccessKind::transfer_read:
-            return {{VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT, 0}};
-        case AccessKind::transfer_write:
-            return {{VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_ACCESS_TRANSFER_WRITE_BIT}};
-    }
-    return {};
-}
-
-bool writes(const std::vector<Step>& steps) {
-    return std::any_of(steps.begin(), steps.end(), [](const Step& step) { return step.writes != 0; });
-}
-
-bool has_depth(VkFormat format) {
-    return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D16_UNORM ||
-           format == VK_FORMAT_D24_UNORM_S8_UINT;
-}
-
-bool layout_fits(VkImageLayout layout, AccessKind kind, VkFormat format) {
-    switch (kind) {
-        case AccessKind::colour_attachment:
-            return layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        case AccessKind::depth_stencil_attachment:
-            return layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-        case AccessKind::depth_stencil_read:
-            return layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-        case AccessKind::input_attachment:
-        case AccessKind::sampled:
-            return layout == (has_depth(format) ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
-                                                : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        case AccessKind::transfer_read:
-            return layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-        case AccessKind::transfer_write:
-            return layout == VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-        default:
-            return layout == VK_IMAGE_LAYOUT_GENERAL;
-    }
-}
-
-/// What one stage did to a resource, and what is known to come after it.
-struct Atom {
-    VkPipelineStageFlags stage = 0;
-    VkAccessFlags writes = 0;  // 0: a read
-    uint32_t subpass = none;   // within the running render pass; none: before it
-    bool available = false;    // writes
-    // What happens after it, and (writes) what sees it: accesses by stage, everywhere from now on and in one subpass.
-    VkPipelineStageFlags after = 0;
-    VkPipelineStageFlags chained = 0;  // stages of finished subpasses that came after it: a barrier may wait for those
-    std::map<VkPipelineStageFlags, VkAccessFlags> visible;
-    std::map<uint32_t, VkPipelineStageFlags> after_in;
-    std::map<uint32_t, std::map<VkPipelineStageFlags, VkAccessFlags>> visible_in;
-};
 
 struct ResourceState {
     std::vector<Atom> reads, writes;
@@ -126,8 +28,13 @@ class Walker {
     std::vector<std::string> walk() {
         check_order();
         if (!problems_.empty()) return problems_;
-        for (int frame = 0; frame < 2; ++frame)
+        start_histories();
+        // What a history wrote in one frame is read in the next, and overwritten in the one after.
+        for (frame_ = 0; frame_ < (histories_.empty() ? 2 : 4); ++frame_) {
             walk_frame();
+            for (const uint32_t previous : histories_)
+                std::swap(states_[previous], states_[previous + 1]);
+        }
         return problems_;
     }
 
@@ -209,9 +116,34 @@ class Walker {
         }
     }
 
+    /// What the executor guarantees at the first frame: contents that everyone sees, in the planned layout.
+    void start_histories() {
+        for (uint32_t resource = 0; resource < states_.size(); ++resource) {
+            if (declared(resource).history != graph::HistoryRole::previous) continue;
+            histories_.push_back(resource);
+            Atom initial;
+            initial.stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
+            initial.writes = VK_ACCESS_TRANSFER_WRITE_BIT;
+            initial.available = true;
+            initial.after = ~0U;
+            for (const Step& step : shader_steps(~0U, 0, 0))
+                initial.visible[step.stage] = ~0U;
+            states_[resource].writes.push_back(initial);
+            states_[resource].layout = plan_.resources[resource].initial_layout;
+            states_[resource].has_contents = true;
+        }
+    }
+
+    /// The pass whose contents the access must find.
+    uint32_t expected_maker(uint32_t index) const {
+        const uint32_t resource = graph_.declaration().accesses[index].resource;
+        if (declared(resource).history != graph::HistoryRole::previous) return expected_[index];
+        return frame_ == 0 ? none : final_makers_[resource + 1];
+    }
+
     void start_imported(uint32_t resource) {
         ResourceState& state = states_[resource];
-        const graph::ExternalUse& before = declared(resource).import.before;
+        const graph::ExternalUse& before = graph_.declaration().import_of(resource).before;
         state = {};
         state.layout = before.layout;
         state.has_contents = !is_image(resource) || before.layout != VK_IMAGE_LAYOUT_UNDEFINED;
@@ -234,7 +166,7 @@ class Walker {
     }
 
     void finish_imported(uint32_t resource) {
-        const graph::ImportOptions& import = declared(resource).import;
+        const graph::ImportOptions& import = graph_.declaration().import_of(resource);
         const ResourceState& state = states_[resource];
         if (is_image(resource) && import.after.layout != VK_IMAGE_LAYOUT_UNDEFINED &&
             state.layout != import.after.layout) {
@@ -252,33 +184,15 @@ class Walker {
     // Barriers
     // ---------------------------------------------------------------------------------------------------------
 
-    static bool ordered_before(const Atom& atom, VkPipelineStageFlags stages) {
-        if (((atom.stage | atom.after | atom.chained) & stages) != 0) return true;
-        return std::any_of(atom.after_in.begin(), atom.after_in.end(),
-                           [&](const auto& in) { return (in.second & stages) != 0; });
-    }
-
-    static void extend(Atom& atom, const graph::Scope& source, const graph::Scope& destination) {
-        if (!ordered_before(atom, source.stages)) return;
-        if (atom.writes != 0 && (atom.stage & source.stages) != 0 && (atom.writes & ~source.access) == 0) {
-            atom.available = true;
-        }
-        atom.after |= destination.stages;
-        if (!atom.available) return;
-        for (const Step& step : shader_steps(destination.stages, 0, 0)) {
-            atom.visible[step.stage] |= destination.access;
-        }
-    }
-
     /// Stages wait as a whole, so the barrier orders what was done to resources in the same bytes too.
     void apply_barrier(uint32_t resource, const graph::Scope& source, const graph::Scope& destination) {
         std::vector<uint32_t> resources = sharers(resource);
         resources.push_back(resource);
         for (const uint32_t each : resources) {
             for (Atom& atom : states_[each].reads)
-                extend(atom, source, destination);
+                atom.extend(source, destination);
             for (Atom& atom : states_[each].writes)
-                extend(atom, source, destination);
+                atom.extend(source, destination);
         }
     }
 
@@ -300,12 +214,12 @@ class Walker {
         for (const uint32_t other : sharers(resource)) {
             ResourceState& state = states_[other];
             for (const Atom& atom : state.reads) {
-                if (!ordered_before(atom, source.stages)) report(pass, resource, "takes memory that is still read");
+                if (!atom.ordered_before(source.stages)) report(pass, resource, "takes memory that is still read");
             }
             for (const Atom& atom : state.writes) {
                 const bool flushed =
                     atom.available || ((atom.stage & source.stages) != 0 && (atom.writes & ~source.access) == 0);
-                if (!ordered_before(atom, source.stages) || !flushed) {
+                if (!atom.ordered_before(source.stages) || !flushed) {
                     report(pass, resource, "takes memory that is still written");
                 }
             }
@@ -334,10 +248,10 @@ class Walker {
                 report(pass, resource, "a barrier expects a layout that the image is not in");
             }
             for (const Atom& atom : state.reads) {
-                if (!ordered_before(atom, barrier.source.stages)) report(pass, resource, "transition while read");
+                if (!atom.ordered_before(barrier.source.stages)) report(pass, resource, "transition while read");
             }
             for (const Atom& atom : state.writes) {
-                if (!ordered_before(atom, barrier.source.stages) || !atom.available) {
+                if (!atom.ordered_before(barrier.source.stages) || !atom.available) {
                     report(pass, resource, "transition of contents that are still written");
                 }
             }
@@ -358,35 +272,19 @@ class Walker {
     // Uses
     // -------------------------------------------------------------------------------------------------------------
 
-    static bool ordered(const Atom& atom, VkPipelineStageFlags stage, uint32_t subpass) {
-        if ((atom.after & stage) != 0) return true;
-        const auto in = atom.after_in.find(subpass);
-        return in != atom.after_in.end() && (in->second & stage) != 0;
-    }
-
-    static bool sees(const Atom& atom, const Step& step, uint32_t subpass) {
-        if (!atom.available) return false;
-        VkAccessFlags visible = 0;
-        if (const auto at = atom.visible.find(step.stage); at != atom.visible.end()) visible |= at->second;
-        if (const auto in = atom.visible_in.find(subpass); in != atom.visible_in.end()) {
-            if (const auto at = in->second.find(step.stage); at != in->second.end()) visible |= at->second;
-        }
-        return ((step.reads | step.writes) & ~visible) == 0;
-    }
-
     void check_steps(uint32_t pass, uint32_t resource, const std::vector<Step>& steps, uint32_t subpass) {
         const ResourceState& state = states_[resource];
         for (const Step& step : steps) {
             for (const Atom& atom : state.writes) {
-                if (!ordered(atom, step.stage, subpass)) {
+                if (!atom.ordered(step.stage, subpass)) {
                     report(pass, resource, "is used while it is still written");
-                } else if (!sees(atom, step, subpass)) {
+                } else if (!atom.seen_by(step, subpass)) {
                     report(pass, resource, "is used before what was written is visible");
                 }
             }
             if (step.writes == 0) continue;
             for (const Atom& atom : state.reads) {
-                if (!ordered(atom, step.stage, subpass)) report(pass, resource, "is written while it is still read");
+                if (!atom.ordered(step.stage, subpass)) report(pass, resource, "is written while it is still read");
             }
         }
     }
@@ -420,7 +318,7 @@ class Walker {
             }
             check_steps(pass, access.resource, steps, subpass);
             const bool needs = !writes(steps) || access.contents == graph::ContentsKind::keep;
-            if (needs && (!state.has_contents || state.maker != expected_[index])) {
+            if (needs && (!state.has_contents || state.maker != expected_maker(index))) {
                 report(pass, access.resource, "does not hold the contents that the pass needs");
             }
         }
@@ -481,16 +379,6 @@ class Walker {
         return a.first < b.first;  // within a kind, declaration order is the order of locations and indices
     }
 
-    static Step load_step(VkFormat format, VkAttachmentLoadOp load) {
-        const bool reads = load == VK_ATTACHMENT_LOAD_OP_LOAD;
-        if (has_depth(format)) {
-            return {kEarly, reads ? VkAccessFlags{VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT} : 0,
-                    reads ? 0 : VkAccessFlags{VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT}};
-        }
-        return {kColour, reads ? VkAccessFlags{VK_ACCESS_COLOR_ATTACHMENT_READ_BIT} : 0,
-                reads ? 0 : VkAccessFlags{VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT}};
-    }
-
     void walk_render_pass(const graph::RenderPass& render_pass, const graph::Group& group) {
         const std::vector<AttachmentUse> uses = attachment_uses(render_pass, group);
         if (!problems_.empty()) return;
@@ -508,7 +396,7 @@ class Walker {
         }
         for (uint32_t subpass = 0; subpass < subpasses.size(); ++subpass) {
             for (const graph::SubpassDependency& dependency : slice(plan_.dependencies, render_pass.dependencies)) {
-                if (dependency.destination == subpass) apply_dependency(dependency);
+                if (dependency.destination == subpass) each_atom([&](Atom& atom) { atom.extend(dependency); });
             }
             for (uint32_t i = 0; i < attachments.size(); ++i) {
                 if (uses[i].layouts.count(subpass) != 0) enter_subpass(attachments[i], uses[i], subpass, subpasses);
@@ -519,12 +407,7 @@ class Walker {
                 if (uses[i].last == subpass) store(attachments[i], subpasses[subpass].pass, subpass);
             }
         }
-        for (ResourceState& state : states_) {  // what follows is ordered by stages alone
-            for (Atom& atom : state.reads)
-                leave_render_pass(atom);
-            for (Atom& atom : state.writes)
-                leave_render_pass(atom);
-        }
+        each_atom([](Atom& atom) { atom.leave_render_pass(); });
         for (const graph::Attachment& attachment : attachments) {
             if (states_[attachment.resource].layout != attachment.final_layout) {
                 report(subpasses.back().pass, attachment.resource, "leaves the render pass in another layout");
@@ -532,27 +415,11 @@ class Walker {
         }
     }
 
-    /// By region and only for the subpasses named, so it extends order and visibility in the later one alone.
-    void apply_dependency(const graph::SubpassDependency& dependency) {
-        const auto extend_in = [&](Atom& atom) {
-            const VkPipelineStageFlags source = dependency.source_scope.stages;
-            const auto in = atom.after_in.find(dependency.source);
-            const bool own = atom.subpass == dependency.source && (atom.stage & source) != 0;
-            const bool chained = in != atom.after_in.end() && (in->second & source) != 0;
-            if (!own && !chained) return;
-            if (own && atom.writes != 0 && (atom.writes & ~dependency.source_scope.access) == 0) atom.available = true;
-            const graph::Scope& destination = dependency.destination_scope;
-            atom.after_in[dependency.destination] |= destination.stages;
-            if (!atom.available) return;
-            for (const Step& step : shader_steps(destination.stages, 0, 0)) {
-                atom.visible_in[dependency.destination][step.stage] |= destination.access;
-            }
-        };
+    template <typename Function>
+    void each_atom(const Function& function) {
         for (ResourceState& state : states_) {
-            for (Atom& atom : state.reads)
-                extend_in(atom);
-            for (Atom& atom : state.writes)
-                extend_in(atom);
+            std::for_each(state.reads.begin(), state.reads.end(), function);
+            std::for_each(state.writes.begin(), state.writes.end(), function);
         }
     }
 
@@ -625,20 +492,14 @@ class Walker {
         if (attachment.store == VK_ATTACHMENT_STORE_OP_DONT_CARE) state.has_contents = false;
     }
 
-    static void leave_render_pass(Atom& atom) {
-        atom.subpass = none;
-        for (const auto& [subpass, stages] : atom.after_in)
-            atom.chained |= stages;
-        atom.after_in.clear();
-        atom.visible_in.clear();
-    }
-
     const graph::Graph& graph_;
     const graph::Plan& plan_;
     const std::vector<uint64_t>& sizes_;
     std::vector<ResourceState> states_;
     std::vector<uint32_t> expected_;      // one an access: the pass whose contents it finds
     std::vector<uint32_t> final_makers_;  // one a resource: the last pass that writes it
+    std::vector<uint32_t> histories_;     // previous halves
+    int frame_ = 0;
     std::vector<std::string> problems_;
 };
 

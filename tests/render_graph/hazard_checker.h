@@ -1,5 +1,6 @@
-// Walks a plan as a device would execute it - two frames in a row - and says what goes wrong. Written from the Vulkan
-// specification's memory model, on its own: it shares no table and no code with the compiler.
+// Walks a plan as a device would execute it - two frames in a row, four where there are histories - and says what goes
+// wrong. Written from the Vulkan specification's memory model, on its own: it shares no table and no code with the
+// compiler.
 //
 // The model. Every use of a resource becomes atoms, one a pipeline stage. A barrier, or a dependency between subpasses,
 // extends what happens after an atom (the stages of its second scope) if the atom, or something already ordered after

@@ -34,6 +34,17 @@ class Declarer {
             add_buffer(i);
         while (!tape_.done())
             add_pass();
+        // What is read of the last frame must be made in this one.
+        for (const size_t history : histories_) {
+            if (images_[history].version != 0) continue;
+            graph::Pass pass = graph_.add_pass("pass" + std::to_string(passes_++), PassKind::graphics);
+            if (record_) pass.record(record_(pass.index()));
+            if (graph::is_depth_stencil(description(images_[history]).format)) {
+                pass.depth_stencil_attachment(images_[history], Contents::clear(graph::clear_depth_stencil(0, 0)));
+            } else {
+                pass.colour_attachment(images_[history], Contents::clear(graph::clear_colour(0, 0, 0, 0)));
+            }
+        }
     }
 
   private:
@@ -56,8 +67,16 @@ class Declarer {
         description.format = formats[tape_.take(4)];
         description.width = description.height = tape_.take(4) == 0 ? 64 : 128;
         const std::string name = "image" + std::to_string(index);
-        images_.push_back(tape_.take(4) == 0 ? graph_.import_image(name, description, import_options(true))
-                                             : graph_.create_image(name, description));
+        const uint32_t residence = tape_.take(8);
+        if (residence == 7) {
+            const graph::ImageHistory history = graph_.create_history_image(name, description, {});
+            images_.push_back(history.previous);
+            histories_.push_back(images_.size());
+            images_.push_back(history.current);
+        } else {
+            images_.push_back(residence < 2 ? graph_.import_image(name, description, import_options(true))
+                                            : graph_.create_image(name, description));
+        }
     }
 
     void add_buffer(uint32_t index) {
@@ -113,7 +132,9 @@ class Declarer {
         // The first attachment sets the size that the others must have.
         graph::ImageHandle* first = &some_image();
         const graph::ImageDescription area = description(*first);
-        if (graph::is_depth_stencil(area.format)) {
+        if (graph_.declaration().resources[first->resource].history == graph::HistoryRole::previous) {
+            pass.input_attachment(*first);
+        } else if (graph::is_depth_stencil(area.format)) {
             *first = pass.depth_stencil_attachment(*first, Contents::clear(graph::clear_depth_stencil(0, 0)));
         } else {
             *first = pass.colour_attachment(*first, Contents::clear(graph::clear_colour(0, 0, 0, 0)));
@@ -233,6 +254,7 @@ class Declarer {
     const std::function<graph::RecordFunction(uint32_t pass)>& record_;
     std::vector<graph::ImageHandle> images_;
     std::vector<graph::BufferHandle> buffers_;
+    std::vector<size_t> histories_;  // their current halves, in images_
     uint32_t passes_ = 0;
 };
 

@@ -11,7 +11,7 @@
 namespace splice::test {
 
 /// Declares a valid frame of at most tape.size() / 4 passes. Everything the graph knows occurs: all kinds of passes and
-/// accesses, imported resources in many states, side effects, images of two sizes and several formats.
+/// accesses, imported resources in many states, histories, side effects, images of two sizes and several formats.
 /// `record` gives each pass its record function; empty: none.
 void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape,
                     const std::function<graph::RecordFunction(uint32_t pass)>& record = {});

@@ -1,6 +1,6 @@
 // Order, culling and merging on frames small enough to judge by hand.
 #include "engine/render_graph/compile.h"
-#include "engine/render_graph/export_dot.h"
+#include "engine/render_graph/export/export.h"
 #include "engine/render_graph/graph.h"
 #include "tests/render_graph/hazard_checker.h"
 
@@ -348,10 +348,59 @@ TEST_CASE("the picture of a frame shows groups, what they hand on and what was c
     measure.sampled(target);
     measure.side_effect();
     graph.add_pass("idle", PassKind::compute);
-    const std::string dot = graph::to_dot(graph, graph::compile(graph));
+    const std::string dot = graph::export_graph(graph, graph::compile(graph), graph::ExportFormat::dot);
     CHECK_THAT(dot, Contains("label=\"0: render pass 64 x 64, 2 attachments\\n2 barriers before\""));
     CHECK_THAT(dot, Contains("pass0 -> pass1 [label=\"a\", style=dashed]"));
     CHECK_THAT(dot, Contains("pass1 -> pass2 [label=\"the \\\"target\\\"\"]"));
     CHECK_THAT(dot,
                Contains("pass3 [label=\"idle\", fillcolor=grey, tooltip=\"pass 'idle' is culled: it writes nothing"));
+
+    const std::string declared = graph::export_graph(graph, graph::ExportFormat::dot);
+    CHECK_THAT(declared, Contains("pass3 [label=\"idle\", fillcolor=palegreen]"));
+    CHECK_THAT(declared, !Contains("cluster"));
+
+    const std::string mermaid = graph::export_graph(graph, graph::compile(graph), graph::ExportFormat::mermaid);
+    CHECK_THAT(mermaid, Contains("subgraph group0[\"0: render pass 64 x 64, 2 attachments; 2 barriers before\"]"));
+    CHECK_THAT(mermaid, Contains("pass0 -.->|\"a\"| pass1"));
+    CHECK_THAT(mermaid, Contains("pass1 -->|\"the #quot;target#quot;\"| pass2"));
+    CHECK_THAT(mermaid, Contains("pass3[\"idle\"]:::culled"));
+
+    const std::string json = graph::export_graph(graph, graph::compile(graph), graph::ExportFormat::json);
+    CHECK_THAT(json, Contains("\"name\": \"the \\\"target\\\"\""));
+    CHECK_THAT(json, Contains("\"culled\": \"pass 'idle' is culled"));
+    CHECK_THAT(json, Contains("\"new_layout\": \"ColorAttachmentOptimal\""));
+    CHECK_THAT(graph::export_graph(graph, graph::ExportFormat::json), !Contains("\"plan\""));
+
+    CHECK(graph::export_format_of("a/b.mmd") == graph::ExportFormat::mermaid);
+    CHECK_FALSE(graph::export_format_of("b.svg"));
+}
+
+TEST_CASE("what a kept pass reads of the last frame is made in this one, and lies in memory of its own") {
+    graph::Graph graph;
+    auto target = imported_target(graph, "target");
+    const graph::ImageHistory used = graph.create_history_image("used", {kColour, 64, 64}, {});
+    const graph::ImageHistory idle = graph.create_history_image("idle", {kColour, 64, 64}, {});
+    auto make = graph.add_pass("make", PassKind::graphics);
+    make.colour_attachment(used.current, kClear);
+    auto feed = graph.add_pass("feed itself", PassKind::graphics);
+    feed.sampled(idle.previous);
+    feed.colour_attachment(idle.current, kClear);
+    auto show = graph.add_pass("show", PassKind::graphics);
+    show.sampled(used.previous);
+    target = show.colour_attachment(target, kClear);
+    graph::CompileOptions options;
+    uint32_t asked = 0;
+    options.memory = [&](uint32_t, const graph::PlannedResource&) {
+        ++asked;
+        return graph::MemoryRequirement{};
+    };
+    const graph::Plan plan = graph::compile(graph, options);
+    CHECK(plan.order == std::vector<uint32_t>{0, 2});
+    REQUIRE(plan.culled.size() == 1);
+    CHECK(plan.culled[0].pass == 1);
+    CHECK(asked == 0);
+    CHECK(plan.resources[used.previous.resource].initial_layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    const graph::Attachment& made = plan.attachments[0];
+    CHECK(made.resource == used.current.resource);
+    CHECK(made.store == VK_ATTACHMENT_STORE_OP_STORE);
 }

@@ -73,7 +73,8 @@ TEST_CASE_METHOD(Fixture, "depth may be tested, sampled and read as an input by 
     pass.depth_stencil_read(depth);
     pass.input_attachment(depth);
     pass.sampled(depth);
-    CHECK_THROWS_WITH(pass.depth_stencil_read(depth), Contains("one depth-stencil attachment at most"));
+    CHECK_THROWS_WITH(pass.depth_stencil_read(depth),
+                      Contains("one depth-stencil attachment at most") && Contains("split the pass"));
     graph::Pass compute = graph.add_pass("compute", PassKind::compute);
     compute.sampled(colour);
     CHECK_THROWS_WITH(compute.storage_read(colour), Contains("different layouts"));
@@ -81,16 +82,23 @@ TEST_CASE_METHOD(Fixture, "depth may be tested, sampled and read as an input by 
 
 TEST_CASE_METHOD(Fixture, "formats that cannot be used that way are refused") {
     graph::Pass pass = graph.add_pass("draw", PassKind::graphics);
-    CHECK_THROWS_WITH(pass.colour_attachment(depth, kClear), Contains("image 'depth'") && Contains("has depth"));
-    CHECK_THROWS_WITH(pass.depth_stencil_attachment(colour, kClear),
-                      Contains("image 'colour'") && Contains("no depth"));
+    CHECK_THROWS_WITH(pass.colour_attachment(depth, kClear),
+                      Contains("image 'depth'") && Contains("has depth") && Contains("create it with a colour format"));
+    CHECK_THROWS_WITH(pass.depth_stencil_attachment(colour, kClear), Contains("image 'colour'") &&
+                                                                         Contains("no depth") &&
+                                                                         Contains("create it with a format that has"));
     graph::Pass compute = graph.add_pass("compute", PassKind::compute);
     CHECK_THROWS_WITH(compute.storage_write(depth, Contents::discard()), Contains("pass 'compute'"));
 }
 
 TEST_CASE_METHOD(Fixture, "a pass can only do what its kind can") {
     graph::Pass compute = graph.add_pass("cull", PassKind::compute);
-    CHECK_THROWS_WITH(compute.colour_attachment(colour, kClear), Contains("a compute pass cannot use a colour"));
+    CHECK_THROWS_WITH(
+        compute.colour_attachment(colour, kClear),
+        Contains("pass 'cull', image 'colour': a compute pass cannot use a colour attachment; use it in a "
+                 "graphics pass"));
+    CHECK_THROWS_WITH(compute.storage_write(buffer, Contents::discard(), VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT),
+                      Contains("shader stages that a compute pass does not have; name its own"));
     CHECK_THROWS_WITH(compute.transfer_write(buffer, Contents::discard()), Contains("target of a transfer"));
     CHECK_THROWS_WITH(compute.vertex_buffer(buffer), Contains("a vertex buffer"));
     graph::Pass transfer = graph.add_pass("copy", PassKind::transfer);
@@ -177,4 +185,33 @@ TEST_CASE("a graphics pass without an attachment has no area") {
     graph::Graph graph;
     graph.add_pass("nothing", PassKind::graphics).side_effect();
     CHECK_THROWS_WITH(graph::compile(graph), Contains("pass 'nothing'") && Contains("attachment"));
+}
+
+TEST_CASE_METHOD(Fixture, "a cycle cannot be declared: contents can only be named once they are written") {
+    graph::Pass first = graph.add_pass("first", PassKind::graphics);
+    const graph::ImageHandle later{other.resource, 1};  // what the second pass is going to make of the first's output
+    CHECK_THROWS_WITH(first.sampled(later), Contains("pass 'first', image 'other': no pass has written these contents "
+                                                     "yet; add the writing pass before"));
+    colour = first.colour_attachment(colour, kClear);
+    graph::Pass second = graph.add_pass("second", PassKind::graphics);
+    second.sampled(colour);
+    CHECK(second.colour_attachment(other, kClear) == later);
+    CHECK_THROWS_WITH(first.sampled(later), Contains("pass 'first': is complete"));
+}
+
+TEST_CASE("of a history the last frame is only read, and this frame is written if the last is read") {
+    graph::Graph graph;
+    const graph::ImageHistory history = graph.create_history_image("light", {kColour, 64, 64}, {});
+    graph::Pass draw = graph.add_pass("draw", PassKind::graphics);
+    CHECK_THROWS_WITH(draw.colour_attachment(history.previous, Contents::keep()),
+                      Contains("pass 'draw', image 'light of the last frame': is only read; write the current half"));
+    CHECK_THROWS_WITH(draw.sampled(history.current), Contains("image 'light': is read before"));
+    draw.input_attachment(history.previous);
+    draw.side_effect();
+    CHECK_THROWS_WITH(graph::compile(graph),
+                      Contains("pass 'draw', image 'light of the last frame': is read, but no "
+                               "pass writes what the next frame will read; write image 'light'"));
+    graph::Pass make = graph.add_pass("make", PassKind::graphics);
+    make.colour_attachment(history.current, kClear);
+    CHECK_NOTHROW(graph::compile(graph));
 }

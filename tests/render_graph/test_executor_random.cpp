@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace {
@@ -54,19 +55,20 @@ Imported make_imported(gpu::Device& device, const graph::Graph& graph) {
 
 void prepare(const graph::Graph& graph, const Imported& imported, VkCommandBuffer commands) {
     size_t next = 0;
-    for (const graph::ResourceDeclaration& declared : graph.declaration().resources) {
+    for (uint32_t resource = 0; resource < graph.declaration().resources.size(); ++resource) {
+        const graph::ResourceDeclaration& declared = graph.declaration().resources[resource];
         if (!declared.imported || declared.kind != graph::ResourceKind::image) continue;
         const gpu::Image& image = imported.images[next++];
-        if (declared.import.before.layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
+        if (graph.declaration().import_of(resource).before.layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
         VkImageMemoryBarrier2 barrier{};
         barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
         barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
         barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-        barrier.newLayout = declared.import.before.layout;
+        barrier.newLayout = graph.declaration().import_of(resource).before.layout;
         barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
         barrier.image = image.handle();
-        barrier.subresourceRange = {graph::aspects_of(declared.image.format), 0, 1, 0, 1};
+        barrier.subresourceRange = {gpu::format_aspects(declared.image.format), 0, 1, 0, 1};
         VkDependencyInfo dependency{};
         dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
         dependency.imageMemoryBarrierCount = 1;
@@ -83,7 +85,7 @@ void record_transfers(const graph::Graph& graph, uint32_t pass, const graph::Pas
         if (access.kind == graph::AccessKind::transfer_write && declared.kind == graph::ResourceKind::buffer) {
             vkCmdFillBuffer(context.commands, bound.buffer, 0, VK_WHOLE_SIZE, pass);
         } else if (access.kind == graph::AccessKind::transfer_write) {
-            const VkImageSubresourceRange range{graph::aspects_of(declared.image.format), 0, 1, 0, 1};
+            const VkImageSubresourceRange range{gpu::format_aspects(declared.image.format), 0, 1, 0, 1};
             if (graph::is_depth_stencil(declared.image.format)) {
                 const VkClearDepthStencilValue value{0.5F, 1};
                 vkCmdClearDepthStencilImage(context.commands, bound.image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -121,6 +123,21 @@ void record_transfers(const graph::Graph& graph, uint32_t pass, const graph::Pas
     }
 }
 
+/// Without the one false alarm that must be expected. Nothing is drawn here, so the layers see no sampled read; of
+/// write, barrier, read, barrier, transition they see the write and the transition, whose barrier waits for the
+/// reader's stage alone, and do not follow the chain of the two barriers (1.3.239). They do say that the write had its
+/// barrier.
+std::string complaints(const test::ValidatedDevice& gpu) {
+    std::string text;
+    for (const gpu::ValidationMessage& message : gpu.instance.messages()) {
+        const auto says = [&](const char* words) { return message.text.find(words) != std::string::npos; };
+        const bool unseen_read = says("usage: SYNC_IMAGE_LAYOUT_TRANSITION, prior_usage") &&
+                                 says("ATTACHMENT_WRITE, write_barriers: SYNC_") && says("SHADER_SAMPLED_READ");
+        if (!unseen_read) text += message.text + "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
 TEST_CASE("random frames run without a word from validation, with every combination of switches") {
@@ -128,7 +145,7 @@ TEST_CASE("random frames run without a word from validation, with every combinat
     const gpu::Buffer sink(gpu.device, {uint64_t{128} * 128 * 16, 0, gpu::MemoryUse::device, "sink"});
     uint32_t state = 12345;
     uint32_t merged = 0;
-    for (uint32_t round = 0; round < 160; ++round) {
+    for (uint32_t round = 0; round < 192; ++round) {
         std::vector<uint32_t> tape(60 + 20 * (round % 24));
         for (uint32_t& number : tape)
             number = (state = state * 1664525U + 1013904223U) >> 8;
@@ -145,6 +162,8 @@ TEST_CASE("random frames run without a word from validation, with every combinat
         options.cull = (round & 1) == 0;
         options.merge = (round & 2) == 0;
         options.alias = (round & 4) == 0;
+        options.batch_barriers = (round & 8) == 0;
+        if ((round & 16) != 0) options.random_order = round;
         graph::Executor executor(gpu.device, options);
         for (int frame = 0; frame < 2; ++frame) {
             gpu.device.submit_and_wait([&](VkCommandBuffer commands) {
@@ -155,7 +174,7 @@ TEST_CASE("random frames run without a word from validation, with every combinat
         for (const graph::RenderPass& pass : executor.plan().render_passes)
             merged += pass.subpasses.count > 1 ? 1 : 0;
         INFO("round " << round);
-        REQUIRE(gpu.complaints() == "");
+        REQUIRE(complaints(gpu) == "");
     }
     CHECK(merged > 40);
 }

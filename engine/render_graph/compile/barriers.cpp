@@ -3,7 +3,7 @@
 // batch.
 #include "engine/render_graph/compile/compilation.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace splice::graph {
 namespace {
@@ -15,23 +15,37 @@ struct Run {
     bool writes = false, needs_contents = true;
 };
 
-Run first_run(std::span<const GroupUse> uses) {
-    Run run{uses[0].group,       uses[0].entry,  uses[0].exit,          uses[0].entry_layout,
-            uses[0].exit_layout, uses[0].writes, uses[0].needs_contents};
-    if (run.writes) return run;
-    for (size_t i = 1; i < uses.size() && !uses[i].writes && uses[i].entry_layout == run.exit_layout; ++i) {
-        run.entry |= uses[i].entry;
-        run.exit |= uses[i].exit;
-    }
-    return run;
-}
-
-size_t run_length(std::span<const GroupUse> uses) {
+/// How many of the uses, from the first, belong to one run.
+size_t run_length(std::span<const GroupUse> uses, bool batch) {
     size_t length = 1;
-    if (uses[0].writes) return length;
+    if (uses[0].writes || !batch) return length;
     while (length < uses.size() && !uses[length].writes && uses[length].entry_layout == uses[0].exit_layout)
         ++length;
     return length;
+}
+
+/// Takes the first run off the uses.
+Run take_run(std::span<const GroupUse>& uses, bool batch) {
+    const size_t length = run_length(uses, batch);
+    Run run{uses[0].group,       uses[0].entry,  uses[0].exit,          uses[0].entry_layout,
+            uses[0].exit_layout, uses[0].writes, uses[0].needs_contents};
+    for (const GroupUse& use : uses.subspan(1, length - 1)) {
+        run.entry |= use.entry;
+        run.exit |= use.exit;
+    }
+    uses = uses.subspan(length);
+    return run;
+}
+
+/// The exit of the last run, which later users of the memory wait for.
+Scope last_exit(std::span<const GroupUse> uses) {
+    Scope exit;
+    for (size_t i = uses.size(); i-- > 0;) {
+        if (i + 1 < uses.size() && (uses[i].writes || uses[i].exit_layout != uses[i + 1].entry_layout)) break;
+        exit |= uses[i].exit;
+        if (uses[i].writes) break;
+    }
+    return exit;
 }
 
 Scope waited_for(const Scope& scope) {
@@ -44,7 +58,9 @@ class BarrierPlanner {
 
     void run() {
         const auto resources = static_cast<uint32_t>(compilation_.declaration.resources.size());
-        find_last_runs();
+        compilation_.plan.batch_barriers = compilation_.options.batch_barriers;
+        find_last_exits();
+        placed_.reserve(compilation_.uses.size());
         for (uint32_t resource = 0; resource < resources; ++resource)
             plan_resource(resource);
         distribute();
@@ -56,15 +72,10 @@ class BarrierPlanner {
         ImageBarrier barrier;
     };
 
-    void find_last_runs() {
-        last_exit_.resize(compilation_.declaration.resources.size());
-        for (uint32_t resource = 0; resource < last_exit_.size(); ++resource) {
-            std::span<const GroupUse> uses = compilation_.uses_of_resource(resource);
-            while (!uses.empty()) {
-                last_exit_[resource] = first_run(uses).exit;
-                uses = uses.subspan(run_length(uses));
-            }
-        }
+    void find_last_exits() {
+        last_exit_.reserve(compilation_.declaration.resources.size());
+        for (uint32_t resource = 0; resource < compilation_.declaration.resources.size(); ++resource)
+            last_exit_.push_back(last_exit(compilation_.uses_of_resource(resource)));
     }
 
     /// Whatever used the memory of a transient resource before its first use: those that had its bytes last, itself in
@@ -78,25 +89,47 @@ class BarrierPlanner {
         return scope;
     }
 
+    /// What comes before the first use in the frame.
+    Run before_frame(uint32_t resource) const {
+        const ResourceDeclaration& declared = compilation_.declaration.resources[resource];
+        Run before;
+        before.writes = true;
+        if (declared.imported) {
+            const ExternalUse& outside = compilation_.declaration.import_of(resource).before;
+            before.exit = outside.scope;
+            if (declared.kind == ResourceKind::image) before.exit_layout = outside.layout;
+            before.writes = write_access(before.exit.access) != 0;
+        } else if (declared.history == HistoryRole::previous) {
+            // The other half, as the frame before left it.
+            const std::span<const GroupUse> uses = compilation_.uses_of_resource(resource + 1);
+            before.exit = last_exit_[resource + 1];
+            before.exit_layout = uses.back().exit_layout;
+            before.writes = uses.back().writes;
+        } else if (declared.history == HistoryRole::current) {
+            // The frame before last wrote what the last one then may have read, or not.
+            before.exit = waited_for(last_exit_[resource - 1]);
+            before.exit |= waited_for(last_exit_[resource]);
+        } else {
+            before.exit = previous_occupants(resource);
+        }
+        return before;
+    }
+
     void plan_resource(uint32_t resource) {
         const ResourceDeclaration& declared = compilation_.declaration.resources[resource];
         std::span<const GroupUse> uses = compilation_.uses_of_resource(resource);
-        Run before;
-        if (declared.imported) {
-            before.exit = declared.import.before.scope;
-            if (declared.kind == ResourceKind::image) before.exit_layout = declared.import.before.layout;
-            before.writes = write_access(before.exit.access) != 0;
-        } else {
-            if (uses.empty()) return;
-            before.exit = previous_occupants(resource);
-            before.writes = true;
+        if (uses.empty() && !declared.imported) return;
+        Run before = before_frame(resource);
+        if (declared.history == HistoryRole::previous) {
+            compilation_.plan.resources[resource].initial_layout = before.exit_layout;
         }
+        const bool batch = compilation_.options.batch_barriers;
         const Run after = declared.imported ? outside(resource, before, uses) : Run{};
         while (!uses.empty()) {
-            Run next = first_run(uses);
+            Run next = take_run(uses, batch);
             if (!next.needs_contents) before.exit_layout = VK_IMAGE_LAYOUT_UNDEFINED;
-            uses = uses.subspan(run_length(uses));
-            const bool joins = uses.empty() && !next.writes && !after.writes && next.exit_layout == after.entry_layout;
+            const bool joins =
+                batch && uses.empty() && !next.writes && !after.writes && next.exit_layout == after.entry_layout;
             if (joins) next.entry |= after.entry;  // the readers outside belong to the last run
             // Without a barrier, the next one must wait for the readers outside as well.
             if (!connect(resource, before, next)) next.exit.stages |= before.exit.stages;
@@ -109,7 +142,7 @@ class BarrierPlanner {
     /// What comes after the frame as a run of its own; no group if nothing does.
     Run outside(uint32_t resource, const Run& before, std::span<const GroupUse> uses) const {
         const ResourceDeclaration& declared = compilation_.declaration.resources[resource];
-        const ExternalUse& after = declared.import.after;
+        const ExternalUse& after = compilation_.declaration.import_of(resource).after;
         Run run;
         if (after == external::none()) return run;
         run.first_group = static_cast<uint32_t>(compilation_.plan.groups.size());
@@ -139,22 +172,36 @@ class BarrierPlanner {
     /// Sorts the barriers, found resource by resource, into batches.
     void distribute() {
         Plan& plan = compilation_.plan;
-        std::stable_sort(placed_.begin(), placed_.end(),
-                         [](const Placed& a, const Placed& b) { return a.group < b.group; });
-        size_t next = 0;
-        for (uint32_t group = 0; group <= plan.groups.size(); ++group) {
-            BarrierBatch& batch = group < plan.groups.size() ? plan.groups[group].barriers : plan.final_barriers;
-            batch.images.first = static_cast<uint32_t>(plan.image_barriers.size());
-            batch.buffers.first = static_cast<uint32_t>(plan.buffer_barriers.size());
-            for (; next < placed_.size() && placed_[next].group == group; ++next) {
-                const ImageBarrier& barrier = placed_[next].barrier;
-                if (compilation_.declaration.resources[barrier.resource].kind == ResourceKind::image) {
-                    plan.image_barriers.push_back(barrier);
-                    ++batch.images.count;
-                } else {
-                    plan.buffer_barriers.push_back({barrier.resource, barrier.source, barrier.destination});
-                    ++batch.buffers.count;
-                }
+        const auto batch_of = [&](const Placed& placed) -> BarrierBatch& {
+            return placed.group < plan.groups.size() ? plan.groups[placed.group].barriers : plan.final_barriers;
+        };
+        const auto is_image = [&](const Placed& placed) {
+            return compilation_.declaration.resources[placed.barrier.resource].kind == ResourceKind::image;
+        };
+        for (const Placed& placed : placed_) {
+            BarrierBatch& batch = batch_of(placed);
+            ++(is_image(placed) ? batch.images : batch.buffers).count;
+        }
+        uint32_t images = 0, buffers = 0;
+        const auto start = [&](BarrierBatch& batch) {
+            batch.images.first = images;
+            batch.buffers.first = buffers;
+            images += std::exchange(batch.images.count, 0);
+            buffers += std::exchange(batch.buffers.count, 0);
+        };
+        for (Group& group : plan.groups)
+            start(group.barriers);
+        start(plan.final_barriers);
+        plan.image_barriers.resize(images);
+        plan.buffer_barriers.resize(buffers);
+        for (const Placed& placed : placed_) {
+            BarrierBatch& batch = batch_of(placed);
+            const ImageBarrier& barrier = placed.barrier;
+            if (is_image(placed)) {
+                plan.image_barriers[batch.images.first + batch.images.count++] = barrier;
+            } else {
+                plan.buffer_barriers[batch.buffers.first + batch.buffers.count++] = {barrier.resource, barrier.source,
+                                                                                     barrier.destination};
             }
         }
     }

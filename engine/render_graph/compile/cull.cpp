@@ -48,29 +48,48 @@ void walk_pass(const Compilation& compilation, uint32_t pass, bool kept, std::ve
     }
 }
 
+/// Culls what leads to nothing `wanted` after the frame. Adds to that the current half of each history whose previous
+/// half is read, and says whether it did.
+bool walk_backwards(Compilation& compilation, std::vector<uint8_t>& wanted) {
+    const Declaration& declaration = compilation.declaration;
+    std::vector<CulledPass>& culled = compilation.plan.culled;
+    culled.clear();
+    std::vector<Future> futures(wanted.size());
+    for (size_t resource = 0; resource < futures.size(); ++resource)
+        futures[resource].wanted = wanted[resource] != 0;
+    bool grew = false;
+    for (auto pass = static_cast<uint32_t>(declaration.passes.size()); pass-- > 0;) {
+        bool kept = declaration.passes[pass].side_effect;
+        for (const Access& access : compilation.graph.accesses(pass)) {
+            kept = kept || (is_write(access.kind) && futures[access.resource].wanted);
+        }
+        compilation.kept[pass] = kept ? 1 : 0;
+        if (!kept) culled.push_back(explain_cull(compilation, futures, pass));
+        walk_pass(compilation, pass, kept, futures);
+        for (const Access& access : compilation.graph.accesses(pass)) {
+            if (!kept || declaration.resources[access.resource].history != HistoryRole::previous) continue;
+            grew = grew || wanted[access.resource + 1] == 0;
+            wanted[access.resource + 1] = 1;
+        }
+    }
+    std::reverse(culled.begin(), culled.end());
+    return grew;
+}
+
 }  // namespace
 
 void cull(Compilation& compilation) {
     const Declaration& declaration = compilation.declaration;
     compilation.kept.assign(declaration.passes.size(), 1);
     if (!compilation.options.cull) return;
-    std::vector<Future> futures(declaration.resources.size());
-    for (size_t resource = 0; resource < futures.size(); ++resource) {
-        futures[resource].wanted =
-            declaration.resources[resource].imported && declaration.resources[resource].import.wanted;
+    // What a kept pass reads of the last frame, this frame must make for the next: known after a walk, which makes
+    // another one necessary. Each finds a history that the one before did not know to be wanted.
+    std::vector<uint8_t> wanted(declaration.resources.size(), 0);
+    for (uint32_t resource = 0; resource < wanted.size(); ++resource) {
+        if (declaration.resources[resource].imported) wanted[resource] = declaration.import_of(resource).wanted;
     }
-    for (auto pass = static_cast<uint32_t>(declaration.passes.size()); pass-- > 0;) {
-        bool kept = declaration.passes[pass].side_effect;
-        for (const Access& access : compilation.graph.accesses(pass)) {
-            kept = kept || (is_write(access.kind) && futures[access.resource].wanted);
-        }
-        if (!kept) {
-            compilation.kept[pass] = 0;
-            compilation.plan.culled.push_back(explain_cull(compilation, futures, pass));
-        }
-        walk_pass(compilation, pass, kept, futures);
+    while (walk_backwards(compilation, wanted)) {
     }
-    std::reverse(compilation.plan.culled.begin(), compilation.plan.culled.end());
 }
 
 }  // namespace splice::graph

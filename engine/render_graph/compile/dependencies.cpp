@@ -8,7 +8,7 @@ namespace {
 /// The passes that read the current contents of each resource, as linked lists in one array.
 class Readers {
   public:
-    explicit Readers(size_t resources) : heads_(resources, none) {}
+    Readers(size_t resources, size_t accesses) : heads_(resources, none) { nodes_.reserve(accesses); }
     void add(uint32_t resource, uint32_t pass) {
         nodes_.push_back({pass, heads_[resource]});
         heads_[resource] = static_cast<uint32_t>(nodes_.size() - 1);
@@ -35,9 +35,10 @@ void find_dependencies(Compilation& compilation) {
     const Declaration& declaration = compilation.declaration;
     compilation.predecessors.assign(declaration.passes.size(), {});
     std::vector<uint32_t> last_writer(declaration.resources.size(), none);
-    Readers readers(declaration.resources.size());
+    Readers readers(declaration.resources.size(), declaration.accesses.size());
     uint32_t last_side_effect = none;
-    std::vector<Edge>& edges = compilation.edges;
+    compilation.edges.reserve(declaration.accesses.size());
+    std::pmr::vector<Edge>& edges = compilation.edges;
     for (uint32_t pass = 0; pass < declaration.passes.size(); ++pass) {
         const auto first = static_cast<uint32_t>(edges.size());
         if (compilation.kept[pass]) {
@@ -45,19 +46,21 @@ void find_dependencies(Compilation& compilation) {
                 const uint32_t resource = access.resource;
                 const uint32_t writer = last_writer[resource];
                 if (!is_write(access.kind)) {
-                    if (writer != none) edges.push_back({writer, resource});
+                    if (writer != none) edges.push_back({writer, resource, is_attachment(access.kind)});
                     readers.add(resource, pass);
                     continue;
                 }
                 if (readers.any(resource)) {
-                    readers.take(resource, [&](uint32_t reader) { edges.push_back({reader, resource}); });
+                    readers.take(resource, [&](uint32_t reader) {
+                        edges.push_back({reader, resource, is_attachment(access.kind)});
+                    });
                 } else if (writer != none) {
-                    edges.push_back({writer, resource});
+                    edges.push_back({writer, resource, is_attachment(access.kind)});
                 }
                 last_writer[resource] = pass;
             }
             if (declaration.passes[pass].side_effect) {
-                if (last_side_effect != none) edges.push_back({last_side_effect, none});
+                if (last_side_effect != none) edges.push_back({last_side_effect, none, false});
                 last_side_effect = pass;
             }
         }

@@ -1,6 +1,8 @@
 // Where each resource is used: one entry a group, in order, with all passes of the group together.
 #include "engine/render_graph/compile/compilation.h"
 
+#include <utility>
+
 namespace splice::graph {
 namespace {
 
@@ -26,33 +28,28 @@ void find_lifetimes(Compilation& compilation) {
     plan.resources.assign(resources, {});
 
     // First walk: count uses and note usage; second walk: fill them in.
-    std::vector<uint32_t> counts(resources, 0), last_group(resources, none);
+    compilation.uses_of.assign(resources, {});
     for (uint32_t group = 0; group < plan.groups.size(); ++group) {
         for (const uint32_t pass : slice(plan.order, plan.groups[group].passes)) {
             for (const Access& access : compilation.graph.accesses(pass)) {
                 PlannedResource& planned = plan.resources[access.resource];
-                planned.image_usage |= image_usage(access.kind);
-                if (layout_of(access.kind, declaration.resources[access.resource].image.format) ==
-                    VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL) {
-                    // Vulkan wants it for this layout, even of images that are never attached.
-                    planned.image_usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+                const ResourceDeclaration& declared = declaration.resources[access.resource];
+                if (declared.kind == ResourceKind::image) {
+                    planned.image_usage |= image_usage(access.kind, declared.image.format);
+                } else {
+                    planned.buffer_usage |= traits_of(access.kind).buffer_usage;
                 }
-                planned.buffer_usage |= buffer_usage(access.kind);
-                if (last_group[access.resource] == group) continue;
-                last_group[access.resource] = group;
+                if (planned.lifetime.last_group == group) continue;
                 if (planned.lifetime.first_group == none) planned.lifetime.first_group = group;
                 planned.lifetime.last_group = group;
-                ++counts[access.resource];
+                ++compilation.uses_of[access.resource].count;
             }
         }
     }
-    compilation.uses_of.resize(resources);
     uint32_t total = 0;
-    for (size_t resource = 0; resource < resources; ++resource) {
-        const bool image = declaration.resources[resource].kind == ResourceKind::image;
-        (image ? plan.resources[resource].buffer_usage : plan.resources[resource].image_usage) = 0;
-        compilation.uses_of[resource] = {total, 0};
-        total += counts[resource];
+    for (Range& range : compilation.uses_of) {
+        range.first = total;
+        total += std::exchange(range.count, 0);
     }
     compilation.uses.resize(total);
     for (uint32_t group = 0; group < plan.groups.size(); ++group) {
@@ -60,14 +57,10 @@ void find_lifetimes(Compilation& compilation) {
             for (const Access& access : compilation.graph.accesses(pass)) {
                 Range& range = compilation.uses_of[access.resource];
                 const bool first = range.count == 0 || compilation.uses[range.first + range.count - 1].group != group;
-                if (first) {
-                    ++range.count;
-                    GroupUse& use = compilation.uses[range.first + range.count - 1];
-                    use.resource = access.resource;
-                    use.group = group;
-                }
-                add_access(compilation.uses[range.first + range.count - 1], access,
-                           declaration.resources[access.resource], first);
+                if (first) ++range.count;
+                GroupUse& use = compilation.uses[range.first + range.count - 1];
+                use.group = group;
+                add_access(use, access, declaration.resources[access.resource], first);
             }
         }
     }

@@ -13,10 +13,11 @@ namespace {
 constexpr uint32_t kSearchBudget = 512;
 
 struct MergeGroup {
-    std::vector<uint32_t> passes;  // ascending
+    uint32_t first = none, last = none;  // passes, linked by Merger::next_
     /// Higher than that of every group it depends on: the search for a path stops where the rank says there is none.
     uint32_t rank = 0;
-    uint32_t search = 0;  // the last search that came here
+    uint32_t search = 0;     // the last search that came here
+    uint32_t candidate = 0;  // where it was last among Merger::candidates_
 };
 
 /// How the group that is looked at uses a resource.
@@ -31,8 +32,9 @@ class Merger {
     explicit Merger(Compilation& compilation)
         : compilation_(compilation),
           uses_(compilation.declaration.resources.size()),
-          last_attachment_user_(compilation.declaration.resources.size(), none) {
-        find_successors();
+          last_attachment_user_(compilation.declaration.resources.size(), none),
+          next_(compilation.declaration.passes.size(), none) {
+        groups_.reserve(compilation.declaration.passes.size());
     }
 
     void run() {
@@ -43,9 +45,8 @@ class Merger {
             const bool graphics = declaration.passes[pass].kind == PassKind::graphics;
             if (!graphics || !join_a_group(pass)) {
                 compilation_.group_of[pass] = static_cast<uint32_t>(groups_.size());
-                groups_.push_back({{pass}, 0, 0});
+                groups_.push_back({pass, pass, rank_after(pass, none, 0), 0, 0});
             }
-            raise_rank(compilation_.group_of[pass], pass);
             if (!graphics) continue;
             for (const Access& access : compilation_.graph.accesses(pass)) {
                 if (is_attachment(access.kind)) last_attachment_user_[access.resource] = pass;
@@ -55,7 +56,7 @@ class Merger {
 
   private:
     void find_successors() {
-        const std::vector<Range>& predecessors = compilation_.predecessors;
+        const std::pmr::vector<Range>& predecessors = compilation_.predecessors;
         successors_of_.assign(predecessors.size() + 1, 0);
         for (const Edge& edge : compilation_.edges)
             ++successors_of_[edge.from + 1];
@@ -69,20 +70,26 @@ class Merger {
         }
     }
 
-    /// After `pass` has come into its group: restores the order of ranks there and in all that depends on the group.
-    void raise_rank(uint32_t group, uint32_t pass) {
-        uint32_t rank = groups_[group].rank;
+    /// At least `rank`, and higher than that of the groups that the pass depends on, its own aside.
+    uint32_t rank_after(uint32_t pass, uint32_t group, uint32_t rank) const {
         for (const Edge& edge : compilation_.predecessors_of(pass)) {
             const uint32_t other = compilation_.group_of[edge.from];
             if (other != group) rank = std::max(rank, groups_[other].rank + 1);
         }
+        return rank;
+    }
+
+    /// After `pass` has joined the group: restores the order of ranks there and in all that depends on the group.
+    void raise_rank(uint32_t group, uint32_t pass) {
+        const uint32_t rank = rank_after(pass, group, groups_[group].rank);
         if (rank == groups_[group].rank) return;
+        if (successors_of_.empty()) find_successors();
         groups_[group].rank = rank;
         stack_.assign(1, group);
         while (!stack_.empty()) {
             const uint32_t node = stack_.back();
             stack_.pop_back();
-            for (const uint32_t member : groups_[node].passes) {
+            for (uint32_t member = groups_[node].first; member != none; member = next_[member]) {
                 for (uint32_t i = successors_of_[member]; i < successors_of_[member + 1]; ++i) {
                     const uint32_t other = compilation_.group_of[successors_[i]];
                     if (other == none || other == node || groups_[other].rank > groups_[node].rank) continue;
@@ -93,37 +100,56 @@ class Merger {
         }
     }
 
-    /// Passes whose group this one might join: they share an attachment with it, or hand over something else. Latest
-    /// first, one a group.
-    std::vector<uint32_t> candidates(uint32_t pass) const {
-        std::vector<uint32_t> found;
+    /// A pass whose group another might join.
+    struct Candidate {
+        uint32_t pass, group;
+        uint32_t handed_over;  // a resource that the two do not hand over as an attachment; none if all are
+    };
+
+    /// Those that share an attachment with the pass, or hand over something else. Latest group first, one a group.
+    void find_candidates(uint32_t pass) {
+        candidates_.clear();
+        const auto add = [&](uint32_t earlier, uint32_t handed_over) {
+            const uint32_t group = compilation_.group_of[earlier];
+            if (groups_[group].candidate < candidates_.size() && candidates_[groups_[group].candidate].group == group) {
+                Candidate& known = candidates_[groups_[group].candidate];
+                // The latest pass, but rather one that tells why not.
+                const bool better =
+                    (handed_over != none) != (known.handed_over != none) ? handed_over != none : earlier > known.pass;
+                if (better) known = {earlier, group, handed_over};
+                return;
+            }
+            groups_[group].candidate = static_cast<uint32_t>(candidates_.size());
+            candidates_.push_back({earlier, group, handed_over});
+        };
         for (const Access& access : compilation_.graph.accesses(pass)) {
             if (is_attachment(access.kind) && last_attachment_user_[access.resource] != none) {
-                found.push_back(last_attachment_user_[access.resource]);
+                add(last_attachment_user_[access.resource], none);
             }
         }
         for (const Edge& edge : compilation_.predecessors_of(pass)) {
             if (edge.resource == none) continue;
-            if (compilation_.declaration.passes[edge.from].kind == PassKind::graphics) found.push_back(edge.from);
+            if (compilation_.declaration.passes[edge.from].kind != PassKind::graphics) continue;
+            add(edge.from, edge.as_attachment ? none : edge.resource);
         }
-        const auto group = [&](uint32_t of) { return compilation_.group_of[of]; };
-        const auto last = [&](uint32_t of) { return groups_[group(of)].passes.back(); };
-        std::sort(found.begin(), found.end(),
-                  [&](uint32_t a, uint32_t b) { return last(a) != last(b) ? last(a) > last(b) : a > b; });
-        found.erase(
-            std::unique(found.begin(), found.end(), [&](uint32_t a, uint32_t b) { return group(a) == group(b); }),
-            found.end());
-        return found;
+        std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
+            return groups_[a.group].last > groups_[b.group].last;
+        });
     }
 
     bool join_a_group(uint32_t pass) {
-        for (const uint32_t earlier : candidates(pass)) {
-            const uint32_t group = compilation_.group_of[earlier];
-            Unmerged unmerged{earlier, pass, UnmergedReason::switched_off, none, none};
-            if (compilation_.options.merge && can_join(group, pass, unmerged)) {
+        find_candidates(pass);
+        for (const Candidate& candidate : candidates_) {
+            const uint32_t group = candidate.group;
+            Unmerged unmerged{candidate.pass, pass, UnmergedReason::switched_off, none, none};
+            if (compilation_.options.merge && candidate.handed_over != none) {
+                unmerged.reason = UnmergedReason::not_pixel_local;
+                unmerged.resource = candidate.handed_over;
+            } else if (compilation_.options.merge && can_join(group, pass, unmerged)) {
                 compilation_.group_of[pass] = group;
-                groups_[group].passes.push_back(pass);
+                groups_[group].last = next_[groups_[group].last] = pass;
                 if (loaded_ == group) load_pass(pass);
+                raise_rank(group, pass);
                 return true;
             }
             compilation_.plan.unmerged.push_back(unmerged);
@@ -141,7 +167,7 @@ class Merger {
         if (loaded_ == group) return;
         loaded_ = group;
         ++generation_;
-        for (const uint32_t pass : groups_[group].passes)
+        for (uint32_t pass = groups_[group].first; pass != none; pass = next_[pass])
             load_pass(pass);
     }
 
@@ -194,7 +220,7 @@ class Merger {
     }
 
     bool same_area(uint32_t group, uint32_t pass, Unmerged& unmerged) const {
-        const ImageDescription& a = area(groups_[group].passes.front());
+        const ImageDescription& a = area(groups_[group].first);
         const ImageDescription& b = area(pass);
         unmerged.resource = none;
         unmerged.reason = UnmergedReason::different_size;
@@ -221,7 +247,7 @@ class Merger {
             while (!stack_.empty()) {
                 const uint32_t node = stack_.back();
                 stack_.pop_back();
-                for (const uint32_t member : groups_[node].passes) {
+                for (uint32_t member = groups_[node].first; member != none; member = next_[member]) {
                     for (const Edge& back : compilation_.predecessors_of(member)) {
                         if (compilation_.group_of[back.from] == group || budget == 0) return false;
                         --budget;
@@ -237,6 +263,8 @@ class Merger {
     std::vector<MergeGroup> groups_;
     std::vector<Use> uses_;  // one a resource
     std::vector<uint32_t> last_attachment_user_;
+    std::vector<uint32_t> next_;  // one a pass: the next of its group
+    std::vector<Candidate> candidates_;
     uint32_t loaded_ = none, generation_ = 0;
     std::vector<uint32_t> successors_, successors_of_;  // passes; where those of a pass begin
     uint32_t search_ = 0;

@@ -21,7 +21,12 @@ class RenderPassPlanner {
         : compilation_(compilation),
           plan_(compilation.plan),
           index_(compilation.declaration.resources.size(), none),
-          next_use_(compilation.declaration.resources.size(), 0) {}
+          next_use_(compilation.declaration.resources.size(), 0) {
+        plan_.render_passes.reserve(plan_.groups.size());
+        plan_.subpasses.reserve(plan_.order.size());
+        plan_.attachments.reserve(plan_.resources.size());
+        plan_.references.reserve(plan_.resources.size());
+    }
 
     void plan_group(uint32_t group) {
         RenderPass render_pass;
@@ -36,9 +41,11 @@ class RenderPassPlanner {
             finish_attachment(attachment, group);
             index_[attachment.resource] = none;
         }
-        sort_uses();
-        add_preserved(render_pass);
-        add_dependencies(render_pass);
+        if (render_pass.subpasses.count > 1) {
+            sort_uses();
+            add_preserved(render_pass);
+            add_dependencies(render_pass);
+        }
         plan_.groups[group].render_pass = static_cast<uint32_t>(plan_.render_passes.size());
         plan_.render_passes.push_back(render_pass);
     }
@@ -98,7 +105,14 @@ class RenderPassPlanner {
         uses_.push_back(
             {index, render_pass.subpasses.count, scope_of(access.kind, access.stages), is_write(access.kind)});
         const bool input = access.kind == AccessKind::input_attachment;
-        return {index, layout, input ? aspects_of(image.image.format) : 0};
+        return {index, layout, input ? gpu::format_aspects(image.image.format) : 0};
+    }
+
+    bool wanted_after_frame(uint32_t index, bool written) const {
+        const ResourceDeclaration& declared = resource(index);
+        if (declared.imported) return !written || compilation_.declaration.import_of(index).wanted;
+        // In the next frame the passes of this one read it.
+        return declared.history == HistoryRole::current && plan_.resources[index - 1].lifetime.first_group != none;
     }
 
     void finish_attachment(Attachment& attachment, uint32_t group) {
@@ -110,14 +124,14 @@ class RenderPassPlanner {
         GroupUse& use = uses[position];
         const bool last = position + 1 == uses.size();
         const bool wanted =
-            last ? declared.imported && (declared.import.wanted || !use.writes) : uses[position + 1].needs_contents;
+            last ? wanted_after_frame(attachment.resource, use.writes) : uses[position + 1].needs_contents;
         if (!use.writes && attachment.load == VK_ATTACHMENT_LOAD_OP_LOAD) {
             attachment.store = VK_ATTACHMENT_STORE_OP_NONE;  // only read: memory still holds it
         } else {
             attachment.store = wanted ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
         }
         const VkFormat format = declared.image.format;
-        if ((aspects_of(format) & VK_IMAGE_ASPECT_STENCIL_BIT) != 0) {
+        if ((gpu::format_aspects(format) & VK_IMAGE_ASPECT_STENCIL_BIT) != 0) {
             attachment.stencil_load = attachment.load;
             attachment.stencil_store = attachment.store;
         }
@@ -131,7 +145,7 @@ class RenderPassPlanner {
                                                   VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                                                   VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
         PlannedResource& planned = plan_.resources[attachment.resource];
-        planned.memoryless = !declared.imported && uses.size() == 1 && (planned.image_usage & ~attachments) == 0 &&
+        planned.memoryless = declared.transient() && uses.size() == 1 && (planned.image_usage & ~attachments) == 0 &&
                              attachment.store == VK_ATTACHMENT_STORE_OP_DONT_CARE;
     }
 

@@ -1,6 +1,7 @@
 // What can only be judged once a pass is complete: its attachments against each other and against the device's limits.
 #include "engine/render_graph/compile/compilation.h"
 
+#include <algorithm>
 #include <string>
 
 namespace splice::graph {
@@ -55,16 +56,40 @@ void validate_graphics_pass(const Compilation& compilation, uint32_t pass) {
         }
     }
     if (!first) {
-        throw GraphError("pass '" + compilation.graph.pass_name(pass) +
-                         "': a graphics pass needs an attachment, which sets the area it renders to");
+        throw GraphError(
+            "pass '" + compilation.graph.pass_name(pass) +
+            "': a graphics pass needs an attachment, which sets the area it renders to; give it one or make it a "
+            "compute pass");
+    }
+}
+
+/// The frame makes what the next one reads.
+void validate_histories(const Compilation& compilation) {
+    const Declaration& declaration = compilation.declaration;
+    std::vector<uint8_t> written(declaration.resources.size(), 0);
+    for (const Access& access : declaration.accesses)
+        written[access.resource] = written[access.resource] || is_write(access.kind);
+    for (uint32_t pass = 0; pass < declaration.passes.size(); ++pass) {
+        for (const Access& access : compilation.graph.accesses(pass)) {
+            if (declaration.resources[access.resource].history != HistoryRole::previous) continue;
+            if (written[access.resource + 1]) continue;
+            fail(compilation, pass, access.resource,
+                 "is read, but no pass writes what the next frame will read; write " +
+                     quote_resource(compilation.graph, access.resource + 1));
+        }
     }
 }
 
 }  // namespace
 
-void validate(const Compilation& compilation) {
+void validate(Compilation& compilation) {
     for (uint32_t pass = 0; pass < compilation.declaration.passes.size(); ++pass) {
         if (compilation.declaration.passes[pass].kind == PassKind::graphics) validate_graphics_pass(compilation, pass);
+    }
+    const std::vector<ResourceDeclaration>& resources = compilation.declaration.resources;
+    if (std::any_of(resources.begin(), resources.end(),
+                    [](const ResourceDeclaration& resource) { return resource.history != HistoryRole::none; })) {
+        validate_histories(compilation);
     }
 }
 

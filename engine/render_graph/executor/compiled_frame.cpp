@@ -19,13 +19,19 @@ bool has_lazy_memory(const gpu::Device& device) {
 
 CompiledFrame::CompiledFrame(gpu::Device& device, RenderPassCache& render_passes, const ExecutorOptions& options,
                              const Graph& graph, uint64_t id)
-    : device_(&device), id_(id), lazy_memory_(has_lazy_memory(device)), declaration_(graph.declaration()) {
+    : device_(&device),
+      id_(id),
+      lazy_memory_(has_lazy_memory(device)),
+      key_(graph.key()),
+      declaration_(graph.declaration()) {
     CompileOptions compile_options;
     compile_options.max_colour_attachments = device.limits().maxColorAttachments;
     compile_options.max_input_attachments = device.limits().maxPerStageDescriptorInputAttachments;
     compile_options.cull = options.cull;
     compile_options.merge = options.merge;
     compile_options.alias = options.alias;
+    compile_options.batch_barriers = options.batch_barriers;
+    compile_options.random_order = options.random_order;
     compile_options.memory = [this](uint32_t resource, const PlannedResource& planned) {
         return requirement(resource, planned);
     };
@@ -43,11 +49,16 @@ CompiledFrame::CompiledFrame(gpu::Device& device, RenderPassCache& render_passes
         if (plan_.resources[resource].lifetime.first_group == none) continue;
         if (declared.imported) {
             needs_binding_[resource] = 1;
+        } else if (declared.history != HistoryRole::none) {
+            continue;  // both halves together, below
         } else if (declared.kind == ResourceKind::image) {
             create_image(graph, resource);
         } else {
             create_buffer(graph, resource);
         }
+    }
+    for (uint32_t resource = 0; resource < declaration_.resources.size(); ++resource) {
+        if (declaration_.resources[resource].history == HistoryRole::previous) create_history(graph, resource);
     }
     for (const ImageBarrier& barrier : slice(plan_.image_barriers, plan_.final_barriers.images)) {
         needs_binding_[barrier.resource] = 1;  // only imported resources are handed over
@@ -56,6 +67,43 @@ CompiledFrame::CompiledFrame(gpu::Device& device, RenderPassCache& render_passes
         render_passes_.push_back(render_passes.get(declaration_, plan_, render_pass));
     }
     framebuffers_.resize(plan_.render_passes.size());
+    fill_in_barriers();
+}
+
+void CompiledFrame::fill_in_barriers() {
+    for (const ImageBarrier& planned : plan_.image_barriers) {
+        VkImageMemoryBarrier2 barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+        barrier.srcStageMask = planned.source.stages;
+        barrier.srcAccessMask = planned.source.access;
+        barrier.dstStageMask = planned.destination.stages;
+        barrier.dstAccessMask = planned.destination.access;
+        barrier.oldLayout = planned.old_layout;
+        barrier.newLayout = planned.new_layout;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        const VkFormat format = declaration_.resources[planned.resource].image.format;
+        barrier.subresourceRange = {gpu::format_aspects(format), 0, VK_REMAINING_MIP_LEVELS, 0,
+                                    VK_REMAINING_ARRAY_LAYERS};
+        image_barriers_.push_back(barrier);
+    }
+    for (const BufferBarrier& planned : plan_.buffer_barriers) {
+        VkBufferMemoryBarrier2 barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+        barrier.srcStageMask = planned.source.stages;
+        barrier.srcAccessMask = planned.source.access;
+        barrier.dstStageMask = planned.destination.stages;
+        barrier.dstAccessMask = planned.destination.access;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.size = VK_WHOLE_SIZE;
+        buffer_barriers_.push_back(barrier);
+    }
+}
+
+void CompiledFrame::update_barriers() {
+    for (size_t i = 0; i < image_barriers_.size(); ++i)
+        image_barriers_[i].image = bound_[plan_.image_barriers[i].resource].image.image;
+    for (size_t i = 0; i < buffer_barriers_.size(); ++i)
+        buffer_barriers_[i].buffer = bound_[plan_.buffer_barriers[i].resource].buffer;
 }
 
 VkImageCreateInfo CompiledFrame::image_info(uint32_t resource, const PlannedResource& planned) const {
@@ -108,27 +156,53 @@ MemoryRequirement CompiledFrame::requirement(uint32_t resource, const PlannedRes
 
 void CompiledFrame::create_image(const Graph& graph, uint32_t resource) {
     const PlannedResource& planned = plan_.resources[resource];
-    const ImageDescription& description = declaration_.resources[resource].image;
-    const std::string& name = graph.resource_name(resource);
-    const VkDevice device = device_->handle();
     const VkImageCreateInfo info = image_info(resource, planned);
-    TransientImage transient;
+    const gpu::Memory* memory = planned.heap == none ? nullptr : &heaps_[planned.heap];
+    bound_[resource].image =
+        make_image(graph.resource_name(resource), info, memory, planned.offset, gpu::MemoryUse::lazy);
+}
+
+void CompiledFrame::create_buffer(const Graph& graph, uint32_t resource) {
+    const PlannedResource& planned = plan_.resources[resource];
+    bound_[resource].buffer = make_buffer(graph.resource_name(resource), buffer_info(resource, planned),
+                                          &heaps_[planned.heap], planned.offset);
+}
+
+/// Two resources that take turns in both roles, with memory of their own.
+void CompiledFrame::create_history(const Graph& graph, uint32_t previous) {
+    const PlannedResource &a = plan_.resources[previous], &b = plan_.resources[previous + 1];
+    if (a.lifetime.first_group == none && b.lifetime.first_group == none) return;
+    PlannedResource both;
+    both.image_usage = a.image_usage | b.image_usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    both.buffer_usage = a.buffer_usage | b.buffer_usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    BoundResource sides[2];
+    for (uint32_t side = 0; side < 2; ++side) {
+        const std::string name = graph.resource_name(previous + 1) + " (" + std::to_string(side) + ")";
+        if (declaration_.resources[previous].kind == ResourceKind::image) {
+            sides[side].image = make_image(name, image_info(previous, both), nullptr, 0, gpu::MemoryUse::device);
+        } else {
+            sides[side].buffer = make_buffer(name, buffer_info(previous, both), nullptr, 0);
+        }
+    }
+    histories_.add(previous, sides[0], sides[1]);
+}
+
+BoundImage CompiledFrame::make_image(const std::string& name, const VkImageCreateInfo& info, const gpu::Memory* memory,
+                                     uint64_t offset, gpu::MemoryUse own_use) {
+    const VkDevice device = device_->handle();
     VkImage handle = VK_NULL_HANDLE;
+    TransientImage transient;
     gpu::check(vkCreateImage(device, &info, nullptr, &handle), "creating the image '" + name + "'");
     transient.image = gpu::UniqueImage(device, handle);
     device_->set_name(VK_OBJECT_TYPE_IMAGE, handle, name);
-    const gpu::Memory* memory = nullptr;
-    if (planned.heap != none) {
-        memory = &heaps_[planned.heap];
-    } else {
+    if (!memory) {
         VkMemoryRequirements requirements;
         vkGetImageMemoryRequirements(device, handle, &requirements);
-        transient.own_memory = device_->memory().allocate(requirements, gpu::MemoryUse::lazy, true);
-        memory = &transient.own_memory;
+        memory = &own_memory_.emplace_back(device_->memory().allocate(requirements, own_use, true));
     }
-    gpu::check(vkBindImageMemory(device, handle, memory->handle(), memory->offset() + planned.offset),
+    gpu::check(vkBindImageMemory(device, handle, memory->handle(), memory->offset() + offset),
                "binding the memory of '" + name + "'");
-    BoundImage& bound = bound_[resource].image;
+    BoundImage bound;
     bound.image = handle;
     bound.usage = info.usage;
     constexpr VkImageUsageFlags viewable =
@@ -136,36 +210,40 @@ void CompiledFrame::create_image(const Graph& graph, uint32_t resource) {
         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
     ++created_;
     if ((info.usage & viewable) != 0) {
-        const VkImageAspectFlags aspects = aspects_of(description.format);
-        transient.view = gpu::create_image_view(*device_, handle, description.format, aspects, description.layers);
+        const VkImageAspectFlags aspects = gpu::format_aspects(info.format);
+        const auto view_of = [&](VkImageAspectFlags wanted) {
+            ++created_;
+            return gpu::create_image_view(*device_, handle, info.format, wanted, info.arrayLayers);
+        };
+        transient.view = view_of(aspects);
         bound.view = bound.depth_view = bound.stencil_view = transient.view.get();
-        ++created_;
         if (aspects == (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT)) {
-            transient.depth_view = gpu::create_image_view(*device_, handle, description.format,
-                                                          VK_IMAGE_ASPECT_DEPTH_BIT, description.layers);
-            transient.stencil_view = gpu::create_image_view(*device_, handle, description.format,
-                                                            VK_IMAGE_ASPECT_STENCIL_BIT, description.layers);
+            transient.depth_view = view_of(VK_IMAGE_ASPECT_DEPTH_BIT);
+            transient.stencil_view = view_of(VK_IMAGE_ASPECT_STENCIL_BIT);
             bound.depth_view = transient.depth_view.get();
             bound.stencil_view = transient.stencil_view.get();
-            created_ += 2;
         }
     }
     images_.push_back(std::move(transient));
+    return bound;
 }
 
-void CompiledFrame::create_buffer(const Graph& graph, uint32_t resource) {
-    const PlannedResource& planned = plan_.resources[resource];
-    const std::string& name = graph.resource_name(resource);
-    const VkBufferCreateInfo info = buffer_info(resource, planned);
+VkBuffer CompiledFrame::make_buffer(const std::string& name, const VkBufferCreateInfo& info, const gpu::Memory* memory,
+                                    uint64_t offset) {
+    const VkDevice device = device_->handle();
     VkBuffer handle = VK_NULL_HANDLE;
-    gpu::check(vkCreateBuffer(device_->handle(), &info, nullptr, &handle), "creating the buffer '" + name + "'");
-    buffers_.emplace_back(device_->handle(), handle);
+    gpu::check(vkCreateBuffer(device, &info, nullptr, &handle), "creating the buffer '" + name + "'");
+    buffers_.emplace_back(device, handle);
     device_->set_name(VK_OBJECT_TYPE_BUFFER, handle, name);
-    const gpu::Memory& memory = heaps_[planned.heap];
-    gpu::check(vkBindBufferMemory(device_->handle(), handle, memory.handle(), memory.offset() + planned.offset),
+    if (!memory) {
+        VkMemoryRequirements requirements;
+        vkGetBufferMemoryRequirements(device, handle, &requirements);
+        memory = &own_memory_.emplace_back(device_->memory().allocate(requirements, gpu::MemoryUse::device, false));
+    }
+    gpu::check(vkBindBufferMemory(device, handle, memory->handle(), memory->offset() + offset),
                "binding the memory of '" + name + "'");
-    bound_[resource].buffer = handle;
     ++created_;
+    return handle;
 }
 
 void CompiledFrame::bind(const Graph& graph, const Bindings& bindings) {
@@ -232,7 +310,7 @@ VkFramebuffer CompiledFrame::framebuffer(uint32_t render_pass) {
     create.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
     create.pNext = &images;
     create.flags = VK_FRAMEBUFFER_CREATE_IMAGELESS_BIT;
-    create.renderPass = render_passes_[render_pass];
+    create.renderPass = render_passes_[render_pass]->get();
     create.attachmentCount = static_cast<uint32_t>(infos.size());
     create.width = planned.width;
     create.height = planned.height;

@@ -3,12 +3,15 @@
 
 #include "engine/render_graph/compile.h"
 #include "engine/render_graph/executor/executor.h"
+#include "engine/render_graph/executor/histories.h"
 #include "engine/render_graph/executor/render_pass_cache.h"
 #include "engine/vulkan/memory.h"
 
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +23,7 @@ class CompiledFrame {
                   const Graph& graph, uint64_t id);
 
     uint64_t id() const { return id_; }
+    const DeclarationKey& key() const { return key_; }
     const Declaration& declaration() const { return declaration_; }
     const Plan& plan() const { return plan_; }
     uint64_t transient_bytes() const { return transient_bytes_; }
@@ -28,8 +32,21 @@ class CompiledFrame {
 
     /// Fills in the imported resources. Throws GraphError where one that the plan uses is not bound or does not match.
     void bind(const Graph& graph, const Bindings& bindings);
+    /// Swaps the halves of histories. Where the frame before was another one, what they held is replaced by their
+    /// initial contents.
+    void begin_histories(const Graph& graph, VkCommandBuffer commands, bool continues) {
+        histories_.begin_frame(bound_);
+        if (!continues) histories_.reset(commands, graph, plan_);
+    }
+    uint32_t history_side() const { return histories_.side(); }
     const std::vector<BoundResource>& bound() const { return bound_; }
-    VkRenderPass render_pass(uint32_t index) const { return render_passes_[index]; }
+    /// The plan's barriers, of what is bound now; one for one.
+    void update_barriers();
+    const std::vector<VkImageMemoryBarrier2>& image_barriers() const { return image_barriers_; }
+    const std::vector<VkBufferMemoryBarrier2>& buffer_barriers() const { return buffer_barriers_; }
+    const std::shared_ptr<const gpu::UniqueRenderPass>& render_pass(uint32_t index) const {
+        return render_passes_[index];
+    }
     /// For the resources bound last.
     VkFramebuffer framebuffer(uint32_t render_pass);
 
@@ -37,7 +54,6 @@ class CompiledFrame {
 
   private:
     struct TransientImage {
-        gpu::Memory own_memory;  // unless placed in a heap
         gpu::UniqueImage image;
         gpu::UniqueImageView view, depth_view, stencil_view;
     };
@@ -45,23 +61,34 @@ class CompiledFrame {
         gpu::UniqueFramebuffer handle;
         std::vector<VkImageUsageFlags> usages;  // of the attachments it was made for
     };
+    void fill_in_barriers();
     MemoryRequirement requirement(uint32_t resource, const PlannedResource& planned) const;
     VkImageCreateInfo image_info(uint32_t resource, const PlannedResource& planned) const;
     VkBufferCreateInfo buffer_info(uint32_t resource, const PlannedResource& planned) const;
     void create_image(const Graph& graph, uint32_t resource);
     void create_buffer(const Graph& graph, uint32_t resource);
+    void create_history(const Graph& graph, uint32_t previous);
+    // Where `memory` is null, they get memory of their own.
+    BoundImage make_image(const std::string& name, const VkImageCreateInfo& info, const gpu::Memory* memory,
+                          uint64_t offset, gpu::MemoryUse own_use);
+    VkBuffer make_buffer(const std::string& name, const VkBufferCreateInfo& info, const gpu::Memory* memory,
+                         uint64_t offset);
 
     gpu::Device* device_;
     uint64_t id_;
     bool lazy_memory_;  // the device has lazily allocated memory
+    DeclarationKey key_;
     Declaration declaration_;
     Plan plan_;
-    std::vector<gpu::Memory> heaps_;
+    std::vector<gpu::Memory> heaps_, own_memory_;
     std::vector<TransientImage> images_;
     std::vector<gpu::UniqueBuffer> buffers_;
+    Histories histories_;
     std::vector<BoundResource> bound_;    // one a resource
     std::vector<uint8_t> needs_binding_;  // one a resource
-    std::vector<VkRenderPass> render_passes_;
+    std::vector<VkImageMemoryBarrier2> image_barriers_;
+    std::vector<VkBufferMemoryBarrier2> buffer_barriers_;
+    std::vector<std::shared_ptr<const gpu::UniqueRenderPass>> render_passes_;
     std::vector<Framebuffer> framebuffers_;  // one a render pass
     uint64_t transient_bytes_ = 0;
     uint64_t created_ = 0;

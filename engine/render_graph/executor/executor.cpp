@@ -5,6 +5,8 @@
 #include "engine/vulkan/timestamps.h"
 
 #include <algorithm>
+#include <cassert>
+#include <span>
 #include <utility>
 
 namespace splice::graph {
@@ -29,7 +31,7 @@ struct Executor::State {
     /// Times of one frame in flight.
     struct Slot {
         gpu::Timestamps timestamps;
-        std::vector<std::string> passes;  // as recorded
+        std::vector<std::string> passes;  // as recorded; the strings keep their storage
     };
 
     State(gpu::Device& device_, const ExecutorOptions& options_)
@@ -39,8 +41,10 @@ struct Executor::State {
     void record_barriers(VkCommandBuffer commands, const BarrierBatch& batch);
     void begin_render_pass(VkCommandBuffer commands, const Graph& graph, uint32_t index);
     void record_group(const Graph& graph, const Group& group, PassContext& context, Slot& slot);
-    void stamp(VkCommandBuffer commands, Slot& slot) const {
-        if (slot.timestamps) slot.timestamps.write(commands);
+    void stamp(VkCommandBuffer commands, Slot& slot, const std::string& pass) {
+        if (!slot.timestamps) return;
+        slot.timestamps.write(commands);
+        slot.passes[stamped++] = pass;
     }
 
     gpu::Device* device;
@@ -51,16 +55,17 @@ struct Executor::State {
     std::vector<Slot> slots;
     ExecutorStatistics statistics;
     uint64_t executions = 0;
+    size_t stamped = 0;  // passes of this execution
     // Kept between calls for their storage.
-    std::vector<VkImageMemoryBarrier2> image_barriers;
-    std::vector<VkBufferMemoryBarrier2> buffer_barriers;
     std::vector<VkImageView> views;
     std::vector<VkClearValue> clear_values;
 };
 
 CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
     for (const auto& frame : frames) {
-        if (frame->declaration() == graph.declaration()) return *frame;
+        if (!(frame->key() == graph.key())) continue;
+        assert(frame->declaration() == graph.declaration());
+        return *frame;
     }
     if (frames.size() >= std::max(options.max_plans, 1U)) {
         const auto oldest = std::min_element(frames.begin(), frames.end(),
@@ -76,46 +81,35 @@ CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
     return *frames.back();
 }
 
+namespace {
+
+void pipeline_barrier(VkCommandBuffer commands, std::span<const VkImageMemoryBarrier2> images,
+                      std::span<const VkBufferMemoryBarrier2> buffers) {
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(images.size());
+    dependency.pImageMemoryBarriers = images.data();
+    dependency.bufferMemoryBarrierCount = static_cast<uint32_t>(buffers.size());
+    dependency.pBufferMemoryBarriers = buffers.data();
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace
+
 void Executor::State::record_barriers(VkCommandBuffer commands, const BarrierBatch& batch) {
     if (batch.empty()) return;
     const Plan& plan = current->plan();
-    image_barriers.clear();
-    for (const ImageBarrier& planned : slice(plan.image_barriers, batch.images)) {
-        VkImageMemoryBarrier2 barrier{};
-        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-        barrier.srcStageMask = planned.source.stages;
-        barrier.srcAccessMask = planned.source.access;
-        barrier.dstStageMask = planned.destination.stages;
-        barrier.dstAccessMask = planned.destination.access;
-        barrier.oldLayout = planned.old_layout;
-        barrier.newLayout = planned.new_layout;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.image = current->bound()[planned.resource].image.image;
-        const VkFormat format = current->declaration().resources[planned.resource].image.format;
-        barrier.subresourceRange = {aspects_of(format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-        image_barriers.push_back(barrier);
+    const std::span image_barriers = slice(current->image_barriers(), batch.images);
+    const std::span buffer_barriers = slice(current->buffer_barriers(), batch.buffers);
+    if (plan.batch_barriers) {
+        pipeline_barrier(commands, image_barriers, buffer_barriers);
+    } else {
+        for (const VkImageMemoryBarrier2& barrier : image_barriers)
+            pipeline_barrier(commands, {&barrier, 1}, {});
+        for (const VkBufferMemoryBarrier2& barrier : buffer_barriers)
+            pipeline_barrier(commands, {}, {&barrier, 1});
     }
-    buffer_barriers.clear();
-    for (const BufferBarrier& planned : slice(plan.buffer_barriers, batch.buffers)) {
-        VkBufferMemoryBarrier2 barrier{};
-        barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
-        barrier.srcStageMask = planned.source.stages;
-        barrier.srcAccessMask = planned.source.access;
-        barrier.dstStageMask = planned.destination.stages;
-        barrier.dstAccessMask = planned.destination.access;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.buffer = current->bound()[planned.resource].buffer;
-        barrier.size = VK_WHOLE_SIZE;
-        buffer_barriers.push_back(barrier);
-    }
-    VkDependencyInfo dependency{};
-    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(image_barriers.size());
-    dependency.pImageMemoryBarriers = image_barriers.data();
-    dependency.bufferMemoryBarrierCount = static_cast<uint32_t>(buffer_barriers.size());
-    dependency.pBufferMemoryBarriers = buffer_barriers.data();
-    vkCmdPipelineBarrier2(commands, &dependency);
-    ++statistics.barrier_commands;
+    statistics.barrier_commands += plan.batch_barriers ? 1 : batch.images.count + batch.buffers.count;
     statistics.image_barriers += batch.images.count;
     statistics.buffer_barriers += batch.buffers.count;
 }
@@ -136,7 +130,7 @@ void Executor::State::begin_render_pass(VkCommandBuffer commands, const Graph& g
     VkRenderPassBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
     begin.pNext = &images;
-    begin.renderPass = current->render_pass(index);
+    begin.renderPass = current->render_pass(index)->get();
     begin.framebuffer = current->framebuffer(index);
     begin.renderArea.extent = {planned.width, planned.height};
     begin.clearValueCount = static_cast<uint32_t>(clear_values.size());
@@ -151,7 +145,8 @@ void Executor::State::record_group(const Graph& graph, const Group& group, PassC
     if (graphics) {
         begin_render_pass(commands, graph, group.render_pass);
         const RenderPass& planned = current->plan().render_passes[group.render_pass];
-        context.render_pass = current->render_pass(group.render_pass);
+        context.render_pass_owner = current->render_pass(group.render_pass);
+        context.render_pass = current->render_pass(group.render_pass)->get();
         context.extent = {planned.width, planned.height};
         context.samples = planned.samples;
     } else {
@@ -171,8 +166,7 @@ void Executor::State::record_group(const Graph& graph, const Group& group, PassC
         device->begin_label(commands, graph.pass_name(pass));
         if (graph.record_function(pass)) graph.record_function(pass)(context);
         device->end_label(commands);
-        slot.passes.push_back(graph.pass_name(pass));
-        stamp(commands, slot);
+        stamp(commands, slot, graph.pass_name(pass));
         ++context.subpass;
     }
     if (graphics) vkCmdEndRenderPass(commands);
@@ -190,8 +184,10 @@ void Executor::execute(const Graph& graph, const Bindings& bindings, VkCommandBu
     }
     state.current = &state.find_or_compile(graph);
     CompiledFrame& frame = *state.current;
-    frame.last_used = ++state.executions;
     frame.bind(graph, bindings);
+    frame.begin_histories(graph, commands, frame.last_used != 0 && frame.last_used == state.executions);
+    frame.update_barriers();
+    frame.last_used = ++state.executions;
 
     ExecutorStatistics& statistics = state.statistics;
     statistics.passes = static_cast<uint32_t>(frame.plan().order.size());
@@ -200,20 +196,22 @@ void Executor::execute(const Graph& graph, const Bindings& bindings, VkCommandBu
     statistics.transient_bytes = frame.transient_bytes();
 
     State::Slot& slot = state.slots[frame_slot];
-    slot.passes.clear();
+    state.stamped = 0;
     if (state.options.timestamps && state.device->features().timestamps) {
         if (slot.timestamps.capacity() < statistics.passes + 1) {
             slot.timestamps = gpu::Timestamps(*state.device, statistics.passes + 1);
             ++statistics.objects_created;
         }
         slot.timestamps.reset(commands);
+        slot.timestamps.write(commands);
+        slot.passes.resize(statistics.passes);
     }
-    state.stamp(commands, slot);
 
     PassContext context;
     context.commands = commands;
     context.plan_id = frame.id();
     context.frame_slot = frame_slot;
+    context.history_side = frame.history_side();
     context.resources = frame.bound();
     for (const Group& group : frame.plan().groups) {
         state.record_barriers(commands, group.barriers);

@@ -32,6 +32,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,7 +64,8 @@ struct ExecutorOptions {
     /// Compiled plans kept, with their transient resources; the one unused for longest goes first, once the device is
     /// idle. At least as many as one command buffer executes graphs.
     uint32_t max_plans = 8;
-    bool cull = true, merge = true, alias = true;  ///< as in CompileOptions
+    bool cull = true, merge = true, alias = true, batch_barriers = true;  ///< as in CompileOptions
+    std::optional<uint64_t> random_order = {};                            ///< as in CompileOptions
 };
 
 struct PassTiming {

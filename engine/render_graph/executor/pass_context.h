@@ -2,10 +2,12 @@
 #pragma once
 
 #include "engine/render_graph/graph.h"
+#include "engine/vulkan/handle.h"
 
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace splice::graph {
@@ -30,13 +32,17 @@ struct PassContext {
     // Graphics passes: inside the render pass; viewport (y down, depth 0..1) and scissor cover `extent`, set anew for
     // every pass. Pipelines must be created for (render_pass, subpass).
     VkRenderPass render_pass = VK_NULL_HANDLE;
+    /// The same for whoever outlives it: Vulkan may give the handle of one that was destroyed to another.
+    std::weak_ptr<const gpu::UniqueRenderPass> render_pass_owner;
     uint32_t subpass = 0;
     VkExtent2D extent{};
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
 
     /// Identifies the compiled plan and never repeats within an executor. While it is the same, render passes and
-    /// transient resources are the same: keep pipelines and descriptor sets under (plan_id, pass).
+    /// transient resources are the same: keep descriptor sets under (plan_id, pass), and under history_side too if the
+    /// pass uses a history, as its two halves swap.
     uint64_t plan_id = 0;
+    uint32_t history_side = 0;  ///< 0 or 1 in turns
     /// Frame in flight, 0 .. frames - 1: per-frame data of this slot is free to be overwritten.
     uint32_t frame_slot = 0;
 

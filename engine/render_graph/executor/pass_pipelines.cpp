@@ -4,15 +4,14 @@ namespace splice::graph {
 
 VkPipeline PassPipelines::get(const gpu::Device& device, const PassContext& context,
                               const std::function<gpu::GraphicsPipelineOptions()>& options) {
-    gpu::GraphicsPipeline& pipeline = pipelines_[{context.render_pass, context.subpass}];
-    if (!pipeline) {
-        gpu::GraphicsPipelineOptions filled = options();
-        filled.render_pass = context.render_pass;
-        filled.subpass = context.subpass;
-        filled.samples = context.samples;
-        pipeline = gpu::GraphicsPipeline(device, filled);
-    }
-    return pipeline.handle();
+    const Place place{context.render_pass_owner, context.subpass};
+    if (const auto known = pipelines_.find(place); known != pipelines_.end()) return known->second.handle();
+    std::erase_if(pipelines_, [](const auto& entry) { return entry.first.render_pass.expired(); });
+    gpu::GraphicsPipelineOptions filled = options();
+    filled.render_pass = context.render_pass;
+    filled.subpass = context.subpass;
+    filled.samples = context.samples;
+    return pipelines_.emplace(place, gpu::GraphicsPipeline(device, filled)).first->second.handle();
 }
 
 }  // namespace splice::graph

@@ -10,20 +10,29 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <utility>
+#include <memory>
 
 namespace splice::graph {
 
-/// One pipeline for each subpass that the routine is recorded in. Serves one executor, which must not be replaced by
-/// another within its life: render passes are told apart by their handles.
+/// One pipeline for each subpass that the routine is recorded in. Serves any number of
+/// executors, one after the other too: render passes are told apart by their owners, as handles may come again.
 class PassPipelines {
   public:
-    /// `options` is called when (render pass, subpass) is new; render_pass, subpass and samples are filled in here.
+    /// `options` is called when the render pass or the subpass is new; render_pass, subpass and samples are filled in
+    /// here.
     VkPipeline get(const gpu::Device& device, const PassContext& context,
                    const std::function<gpu::GraphicsPipelineOptions()>& options);
 
   private:
-    std::map<std::pair<VkRenderPass, uint32_t>, gpu::GraphicsPipeline> pipelines_;
+    struct Place {
+        std::weak_ptr<const gpu::UniqueRenderPass> render_pass;
+        uint32_t subpass;
+        friend bool operator<(const Place& a, const Place& b) {
+            if (a.render_pass.owner_before(b.render_pass)) return true;
+            return !b.render_pass.owner_before(a.render_pass) && a.subpass < b.subpass;
+        }
+    };
+    std::map<Place, gpu::GraphicsPipeline> pipelines_;
 };
 
 }  // namespace splice::graph

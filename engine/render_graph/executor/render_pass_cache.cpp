@@ -127,10 +127,13 @@ gpu::UniqueRenderPass create(const gpu::Device& device, const Declaration& decla
 
 }  // namespace
 
-VkRenderPass RenderPassCache::get(const Declaration& declaration, const Plan& plan, const RenderPass& render_pass) {
-    gpu::UniqueRenderPass& cached = render_passes_[key_of(declaration, plan, render_pass)];
-    if (!cached) cached = create(*device_, declaration, plan, render_pass);
-    return cached.get();
+std::shared_ptr<const gpu::UniqueRenderPass> RenderPassCache::get(const Declaration& declaration, const Plan& plan,
+                                                                  const RenderPass& render_pass) {
+    std::shared_ptr<const gpu::UniqueRenderPass>& cached = render_passes_[key_of(declaration, plan, render_pass)];
+    if (!cached) {
+        cached = std::make_shared<const gpu::UniqueRenderPass>(create(*device_, declaration, plan, render_pass));
+    }
+    return cached;
 }
 
 }  // namespace splice::graph

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <vector>
 
 namespace splice::graph {
@@ -17,13 +18,13 @@ namespace splice::graph {
 class RenderPassCache {
   public:
     explicit RenderPassCache(gpu::Device& device) : device_(&device) {}
-    /// Lives as long as the cache.
-    VkRenderPass get(const Declaration& declaration, const Plan& plan, const RenderPass& render_pass);
+    std::shared_ptr<const gpu::UniqueRenderPass> get(const Declaration& declaration, const Plan& plan,
+                                                     const RenderPass& render_pass);
     uint64_t created() const { return render_passes_.size(); }
 
   private:
     gpu::Device* device_;
-    std::map<std::vector<uint32_t>, gpu::UniqueRenderPass> render_passes_;
+    std::map<std::vector<uint32_t>, std::shared_ptr<const gpu::UniqueRenderPass>> render_passes_;
 };
 
 }  // namespace splice::graph

@@ -1,0 +1,19 @@
+// What moved between two reports.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace splice::bench {
+
+/// A report that `splice-bench graph --json` wrote. Throws InputError for anything else.
+nlohmann::json read_report(const std::filesystem::path& path);
+
+/// A table of every time whose quartiles lie apart and whose median and minimum differ by more than 5 %, and of every
+/// count that differs, the largest ratios first; then how many figures stayed where they were and what only one of the
+/// two has. Throws InputError naming `old_name` where `before` lacks a field.
+std::string compare_reports(const nlohmann::json& before, const nlohmann::json& now, const std::string& old_name);
+
+}  // namespace splice::bench

@@ -1,0 +1,167 @@
+#include "engine/bench/graph/report_html.h"
+
+#include "engine/bench/graph/figures.h"
+#include "engine/bench/graph/report_style.h"
+#include "engine/bench/graph/report_text.h"
+#include "engine/bench/graph/svg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace splice::bench {
+namespace {
+
+std::string figure(std::string_view title, std::string_view caption, const std::string& drawing) {
+    return fmt::format(
+        "<figure>\n<h2>{}</h2>\n<p class=\"caption\">{}</p>\n<div class=\"drawing\">\n{}</div>\n</figure>\n",
+        escape_markup(title), escape_markup(caption), drawing);
+}
+
+/// One figure that matters, and what it should be.
+std::string tile(const std::string& value, std::string_view meaning, std::string_view goal, bool reached) {
+    return fmt::format("<div class=\"tile {}\"><b>{}</b><span>{}</span><small>{}</small></div>\n",
+                       reached ? "good" : "short", escape_markup(value), escape_markup(meaning), escape_markup(goal));
+}
+
+std::string compile_tiles(const GraphReport& report) {
+    std::string tiles;
+    for (const CompileResult* result : typical_results(report)) {
+        if (result->family != "layered") continue;
+        const double ns = result->compile_ns.median / result->passes;
+        tiles += tile(fmt::format("{:.0f} ns", ns), fmt::format("a pass to compile {} passes, layered", result->passes),
+                      "goal: at most 1000", ns <= 1000);
+        const double hit_us = result->cache_hit_ns.median / 1000;
+        tiles += tile(fmt::format("{:.1f} us", hit_us), "to find that it is compiled already", "goal: below 10",
+                      hit_us < 10);
+        const double saved = 1 - static_cast<double>(result->plan.barriers) /
+                                     static_cast<double>(std::max<uint64_t>(result->plan.barriers_one_per_access, 1));
+        tiles +=
+            tile(fmt::format("{:.0f} %", saved * 100), "fewer barriers than one an access", "the same graph", true);
+    }
+    for (const Growth& growth : report.growth) {
+        if (growth.family == "layered")
+            tiles += tile(fmt::format("{:.2f}", growth.exponent),
+                          fmt::format("growth exponent, {} to {} passes", growth.from, growth.to), "goal: at most 1.10",
+                          growth.exponent <= 1.1);
+    }
+    return tiles;
+}
+
+std::string tiles_of(const GraphReport& report) {
+    std::string tiles = compile_tiles(report);
+    double worst = 0;
+    for (const MemoryResult& result : report.memory)
+        worst = std::max(worst, result.worst_ratio);
+    if (worst > 0)
+        tiles += tile(fmt::format("{:.3f}", worst), "placed bytes over the lower bound, worst family and seed",
+                      "goal: at most 1.10", worst <= 1.1);
+    for (const RecordResult& result : report.recorded) {
+        tiles += tile(fmt::format("{:+.1f} %", result.overhead * 100),
+                      fmt::format("to record through the graph, {} draw{} a geometry pass", result.objects,
+                                  result.objects == 1 ? "" : "s"),
+                      "goal: at most +5", result.overhead <= 0.05);
+    }
+    return "<div class=\"tiles\">\n" + tiles + "</div>\n";
+}
+
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+    std::string text = "<div class=\"drawing\"><table>\n<tr>";
+    for (const std::string& cell : header)
+        text += "<th>" + escape_markup(cell) + "</th>";
+    text += "</tr>\n";
+    for (const auto& row : rows) {
+        text += "<tr>";
+        for (const std::string& cell : row)
+            text += "<td>" + escape_markup(cell) + "</td>";
+        text += "</tr>\n";
+    }
+    return text + "</table></div>\n";
+}
+
+std::string device_section(const GraphReport& report) {
+    if (report.on_device.empty()) return "";
+    std::vector<std::vector<std::string>> rows;
+    for (const DeviceResult& result : report.on_device) {
+        for (const VariantResult& variant : result.variants) {
+            rows.push_back({fmt::format("{} {}", result.family, result.passes), variant.name,
+                            fmt::format("{:.2f}", variant.frame_ms.minimum),
+                            fmt::format("{:.2f}", variant.frame_ms.median),
+                            fmt::format("{:.0f}", variant.record_us.median), fmt::format("{}", variant.render_passes),
+                            fmt::format("{} / {}", variant.barriers, variant.barrier_commands),
+                            fmt::format("{:.2f}", static_cast<double>(variant.transient_bytes) / 1e6),
+                            variant.same_image ? "same" : "DIFFERS"});
+        }
+    }
+    return "<section>\n<h2>On the device</h2>\n<p class=\"caption\">" + escape_markup(report.device) +
+           "; all variants in turn, one frame each a round. A frame is recorded, submitted and waited for.</p>\n" +
+           table({"graph", "switches", "ms, least", "median", "record us", "render passes", "barriers / commands",
+                  "transient MB", "image"},
+                 rows) +
+           "</section>\n";
+}
+
+std::string record_section(const GraphReport& report) {
+    if (report.recorded.empty()) return "";
+    std::vector<std::vector<std::string>> rows;
+    for (const RecordResult& result : report.recorded) {
+        rows.push_back(
+            {fmt::format("{}", result.objects), fmt::format("{}", result.commands),
+             fmt::format("{:.1f}", result.by_hand_us.median), fmt::format("{:.1f}", result.through_graph_us.median),
+             fmt::format("{:+.1f} %", result.overhead * 100), fmt::format("{:.1f}", result.declared_anew_us.median),
+             fmt::format("{:+.1f} %", result.overhead_declared_anew * 100), result.same_commands ? "same" : "DIFFER",
+             result.same_image ? "same" : "DIFFERS"});
+    }
+    return "<section>\n<h2>Recording, through the graph and by hand</h2>\n<p class=\"caption\">A deferred view of 32 "
+           "passes; by hand everything is filled in beforehand. Microseconds, median.</p>\n" +
+           table({"draws a geometry pass", "commands", "by hand", "graph kept", "overhead", "declared anew", "overhead",
+                  "commands", "image"},
+                 rows) +
+           "</section>\n";
+}
+
+std::string example_sections(const GraphReport& report) {
+    std::string text;
+    for (const ExampleGraph& example : report.examples) {
+        text += figure(fmt::format("The {} graph", example.family),
+                       "Top to bottom in order of dependency. Boxed together: the subpasses of one render pass. The "
+                       "lines are resources; rest the pointer on one for its name.",
+                       draw_graph(example));
+        text += figure(fmt::format("Memory of the {} graph", example.family),
+                       "One rectangle a transient resource: the groups in which it lives, and its bytes in the heap.",
+                       draw_lifetimes(example));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string report_html(const GraphReport& report) {
+    std::string page =
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta "
+        "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>Render graph "
+        "benchmark</title>\n<style>\n" +
+        std::string(kReportStyle) + "</style>\n</head>\n<body>\n<main>\n<h1>Render graph benchmark</h1>\n";
+    page +=
+        fmt::format("<p class=\"caption\">{}; {}; medians of {} rounds; seed {}</p>\n", escape_markup(report.processor),
+                    report.device.empty() ? "no device" : escape_markup(report.device), report.repeat, report.seed);
+    page += tiles_of(report);
+    page += figure("Compile time a pass",
+                   "All phases, image sizes log-uniform. Level is linear; the exponent is of the total from 64 to "
+                   "4,096 passes.",
+                   draw_growth(report));
+    const uint32_t passes = typical_results(report).front()->passes;
+    page += figure(fmt::format("Where the time goes, {} passes", passes), "Nanoseconds a pass.", draw_phases(report));
+    page += figure(fmt::format("Barriers, {} passes", passes),
+                   "One an access: what a recorder needs that looks at one access at a time.", draw_barriers(report));
+    page += figure("Aliased memory over the lower bound",
+                   "The lower bound is the most that is alive at once. The worst of the seeds; dashed: the goal, 1.10.",
+                   draw_memory(report));
+    page += example_sections(report);
+    page += device_section(report) + record_section(report);
+    return page + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace splice::bench

@@ -116,6 +116,14 @@ Transform source_transform(const SceneModel& model, const format::ModelInfo& inf
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> files = {path};
+    if (kind_of_file(path) != FileKind::kScene) return files;
+    for (const SceneModel& model : read_scene_file(path).models)
+        if (const auto* file = std::get_if<std::filesystem::path>(&model.source)) files.push_back(*file);
+    return files;
+}
+
 LoadedScene load_scene(const std::filesystem::path& path, Renderer& renderer, const Progress& progress) {
     LoadedScene loaded;
     if (kind_of_file(path) == FileKind::kScene) {

@@ -22,6 +22,9 @@ struct LoadedScene {
 /// a scene names twice are loaded once. Throws InputError, SystemError, DeviceError.
 LoadedScene load_scene(const std::filesystem::path& path, Renderer& renderer, const Progress& progress = {});
 
+/// The files that load_scene reads: `path`, and the models and meshes that it names if it is a scene. Throws the same.
+std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& path);
+
 /// The mesh of a shape; kinds and parameters as in docs/scene_format.md. Throws InputError("NAME: PATH: ...").
 SourceMesh make_shape(const ShapeDescription& shape, const std::string& name, const std::string& path);
 

@@ -4,11 +4,13 @@
 #include "engine/capture/load_scene.h"
 #include "engine/capture/png_file.h"
 #include "engine/capture/stats_json.h"
+#include "preprocess/build_model/distinct_files.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/build_model/stage_display.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
 
+#include <algorithm>
 #include <iostream>
 
 namespace {
@@ -47,7 +49,23 @@ void check_validation(const Renderer& renderer) {
                       " problem(s), the first: " + messages.front());
 }
 
+std::filesystem::path picture_path(const CaptureCommand& command, std::size_t index) {
+    return command.orbit > 0 ? numbered(command.output, index, command.orbit) : command.output;
+}
+
+void check_files(const CaptureCommand& command) {
+    std::vector<NamedFile> inputs, outputs;
+    for (const std::filesystem::path& file : files_of_scene(command.input))
+        inputs.push_back({inputs.empty() ? "INPUT" : "the scene's model", file});
+    for (std::size_t i = 0; i < std::max(command.orbit, 1U); ++i)
+        outputs.push_back({"--output", picture_path(command, i)});
+    if (command.stats) outputs.push_back({"--stats", *command.stats});
+    if (command.graph) outputs.push_back({"--graph", *command.graph});
+    check_distinct_files(inputs, outputs);
+}
+
 int capture(const CaptureCommand& command) {
+    check_files(command);
     check_output_path(command.output);
     if (command.stats) check_output_path(*command.stats);
     if (command.graph) check_output_path(*command.graph);
@@ -64,8 +82,7 @@ int capture(const CaptureCommand& command) {
         if (command.stats && i == 0) frame = renderer.render(loaded.scene, settings);
         check_validation(renderer);
         if (command.graph && i == 0) write_text_file(*command.graph, frame.graph);
-        const std::filesystem::path path =
-            command.orbit > 0 ? numbered(command.output, i, cameras.size()) : command.output;
+        const std::filesystem::path path = picture_path(command, i);
         write_png(path, {frame.width, frame.height, std::move(frame.rgba)});
         files.push_back({path.string(), std::move(frame.stats)});
     }

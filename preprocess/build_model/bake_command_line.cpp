@@ -1,5 +1,6 @@
 #include "preprocess/build_model/bake_command_line.h"
 
+#include "preprocess/build_model/distinct_files.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/error.h"
 
@@ -81,17 +82,10 @@ fs::path default_output(const fs::path& input) {
     return name.replace_extension(".splice");
 }
 
-bool same_file(const fs::path& a, const fs::path& b) {
-    std::error_code error;
-    if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
-    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
-}
-
 void check_consistency(const BakeCommand& command) {
-    if (same_file(command.input, command.output))
-        throw UsageError("the output would overwrite the input " + command.input.string());
-    if (command.stats && (same_file(*command.stats, command.input) || same_file(*command.stats, command.output)))
-        throw UsageError("--stats would overwrite " + command.stats->string());
+    std::vector<NamedFile> outputs = {{"--output", command.output}};
+    if (command.stats) outputs.push_back({"--stats", *command.stats});
+    check_distinct_files({{"INPUT", command.input}}, outputs);
     const SamplingOptions& sampling = command.options.sampling;
     if (sampling.h_min > sampling.h_max)
         throw UsageError("--h-min " + printed(sampling.h_min) + " is larger than --h-max " + printed(sampling.h_max));

@@ -5,9 +5,13 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 namespace splice {
 namespace {
@@ -26,18 +30,31 @@ int report(const std::string& program, const std::string& message, int exit_code
     return exit_code;
 }
 
+// A full disk behind stdout shows when the last of the buffers is written, or earlier: then the streams remember.
+void flush_output() {
+    errno = 0;
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return;
+    throw SystemError(std::string("cannot write to standard output") +
+                      (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
+}
+
 }  // namespace
 
 int run_program(const std::string& program, const std::function<int()>& body) {
     std::signal(SIGXFSZ, SIG_IGN);
     try {
-        return body();
+        const int exit_code = body();
+        flush_output();
+        return exit_code;
     } catch (const UsageError& error) {
         return report(program, error.what(), kExitUsage);
     } catch (const Error& error) {
         return report(program, error.what(), kExitFailure);
     } catch (const std::bad_alloc&) {
         return report(program, "out of memory", kExitFailure);
+    } catch (const std::system_error& error) {
+        return report(program, error.what(), kExitFailure);
     } catch (const std::exception& error) {
         return report(program, std::string("internal error: ") + error.what(), kExitFailure);
     }

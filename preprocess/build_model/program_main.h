@@ -13,8 +13,9 @@ namespace splice {
 inline constexpr int kExitFailure = 1;  // input, system, memory
 inline constexpr int kExitUsage = 2;
 
-/// Runs `body` and returns its result; an exception is printed as "PROGRAM: MESSAGE" and becomes an exit code. Writing
-/// beyond a file size limit becomes an error of that write instead of a signal.
+/// Runs `body` and returns its result; an exception is printed as "PROGRAM: MESSAGE" and becomes an exit code, and
+/// so does standard output that did not arrive. Writing beyond a file size limit becomes an error of that write instead
+/// of a signal.
 int run_program(const std::string& program, const std::function<int()>& body);
 
 /// Parses the command line. False when --help or --version was asked for and printed. Throws UsageError.

@@ -248,6 +248,43 @@ TEST_CASE("splice-bake refuses every malformed option with one line and exit cod
     CHECK_THAT(nothing.err, Contains("INPUT"));
 }
 
+TEST_CASE("splice-bake never writes over its input or its other output, however they are spelled") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "sub");
+    test::write_cube(folder / "cube.obj");
+    std::filesystem::create_symlink("cube.obj", folder / "link.splice");
+    std::filesystem::create_hard_link(folder / "cube.obj", folder / "hard.splice");
+    std::filesystem::create_symlink("x.splice", folder / "dangling.json");
+    std::filesystem::create_directory_symlink(".", folder / "here");
+    const std::string before = read_text(folder / "cube.obj");
+    const std::vector<std::string> names = names_in(folder.path());
+    const std::string absolute = (folder / "x.splice").string();
+    for (const std::vector<std::string>& options :
+         std::vector<std::vector<std::string>>{{"-o", (folder / "cube.obj").string()},
+                                               {"-o", "sub/../cube.obj"},
+                                               {"-o", "link.splice"},
+                                               {"-o", "hard.splice"},
+                                               {"-o", "here/cube.obj"},
+                                               {"--stats", "./cube.obj"},
+                                               {"--stats", "./cube.splice"},  // the default output
+                                               {"-o", "x.splice", "--stats", "./x.splice"},
+                                               {"-o", "./x.splice", "--stats", "x.splice"},
+                                               {"-o", "x.splice", "--stats", absolute},
+                                               {"-o", absolute, "--stats", "sub/../x.splice"},
+                                               {"-o", "x.splice", "--stats", "here/x.splice"},
+                                               {"-o", "x.splice", "--stats", "dangling.json"}}) {
+        std::vector<std::string> arguments = {"cube.obj", "--quiet"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Outcome outcome = bake(folder, arguments);
+        INFO(options.back() << ": " << outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK_THAT(outcome.err, Contains("would overwrite"));
+        CHECK(read_text(folder / "cube.obj") == before);
+        CHECK(names_in(folder.path()) == names);
+    }
+}
+
 TEST_CASE("splice-bake accepts the limits of its options") {
     const TemporaryFolder folder;
     test::write_cube(folder / "cube.obj");

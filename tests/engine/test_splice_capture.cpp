@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -281,11 +283,60 @@ TEST_CASE("input that cannot be used is one line and exit code 1, and leaves no 
     }
 }
 
+TEST_CASE("an output is never written over an input or another output") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    write_small_model(folder / "turn-001.png");
+    write_text(folder / "scene.json", R"({"models": [{"shape": {"kind": "cube"}}, {"file": "a.splice"}]})");
+    std::filesystem::create_symlink("a.splice", folder / "link.png");
+    const std::vector<std::string> before = files_in(folder.path());
+    const std::string model = read_text(folder / "a.splice"), scene = read_text(folder / "scene.json");
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"a.splice", "-o", "a.splice"},
+             {"a.splice", "-o", "./a.splice"},
+             {"a.splice", "-o", (folder / "a.splice").string()},
+             {"a.splice", "-o", "link.png"},
+             {"a.splice", "-o", "z.png", "--stats", "a.splice"},
+             {"a.splice", "-o", "z.png", "--stats", "./z.png"},
+             {"a.splice", "-o", "z.png", "--graph", "z.json", "--stats", "./z.json"},
+             {"scene.json", "-o", "z.png", "--stats", "scene.json"},
+             {"scene.json", "-o", "z.png", "--graph", "./scene.json"},
+             {"scene.json", "-o", "a.splice"},
+             {"turn-001.png", "-o", "turn.png", "--orbit", "2"},
+             {"a.splice", "-o", "turn.png", "--orbit", "2", "--stats", "turn-000.png"}}) {
+        const Outcome outcome = capture(folder, arguments);
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK(outcome.err.find("would overwrite") != std::string::npos);
+        CHECK(files_in(folder.path()) == before);
+        CHECK(read_text(folder / "a.splice") == model);
+        CHECK(read_text(folder / "scene.json") == scene);
+    }
+    // An orbit does not write the name it is given.
+    CHECK(capture(folder, {"a.splice", "-o", "a.splice", "--orbit", "1", "--size", "8x8", "--quiet"}).exit_code == 0);
+    CHECK(read_text(folder / "a.splice") == model);
+}
+
 TEST_CASE("a picture that is already there survives a failed run") {
     const TemporaryFolder folder;
     write_text(folder / "a.png", "precious");
     CHECK(capture(folder, {"gone.splice", "-o", "a.png"}).exit_code == 1);
     CHECK(read_text(folder / "a.png") == "precious");
+}
+
+TEST_CASE("help that does not fit behind standard output is a failure") {
+    const TemporaryFolder folder;
+    for (const char* option : {"--help", "--list-devices"}) {
+        const Outcome outcome =
+            run({.program = program("splice-capture"), .arguments = {option}, .folder = folder.path(), .in_child = [] {
+                     if (!std::freopen("/dev/full", "w", stdout)) std::abort();
+                 }});
+        CAPTURE(option, outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK(outcome.err.find("splice-capture: cannot write to standard output") == 0);
+    }
 }
 
 TEST_CASE("help, version and the list of devices need no input") {

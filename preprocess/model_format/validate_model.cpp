@@ -203,7 +203,8 @@ class Validator {
             const Patch& patch = view_.patches[p];
             for (const Surfel& surfel : view_.surfels.subspan(patch.first_surfel, patch.surfel_count)) {
                 require(all_finite(surfel.position), surfel, "surfel position is not finite");
-                const float radius = float_from_half(surfel.radius), epsilon = decode_extent(surfel.extent, radius).epsilon;
+                const float radius = float_from_half(surfel.radius),
+                            epsilon = decode_extent(surfel.extent, radius).epsilon;
                 require(radius >= 0 && radius <= patch.max_surfel_radius, surfel.radius,
                         "surfel radius is not between 0 and the patch's largest");
                 require(epsilon >= 0 && epsilon <= patch.max_surfel_epsilon, surfel.extent,

@@ -10,11 +10,11 @@
 namespace splice {
 
 struct CoverSite {
-    Vec3f position;          // on the surface
-    Vec3f normal;            // unit
-    float spacing;           // wanted distance to the neighbours
-    std::uint32_t triangle;  // of the mesh, holds the position
-    float radius;            // of the disk
+    Vec3f position;              // on the surface
+    Vec3f normal;                // unit
+    float spacing;               // wanted distance to the neighbours
+    std::uint32_t triangle;      // of the mesh, holds the position
+    float radius;                // of the disk
     float above = 0, below = 0;  // how far the owned cells leave the disk's plane; at most the radius
 };
 

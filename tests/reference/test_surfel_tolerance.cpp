@@ -38,7 +38,8 @@ TEST_CASE("a surfel grants its tolerance to the pixels under it and to no others
     const Tolerance tolerance = surfel_tolerance(view_of(model), view, reference, 1.5f, 1e-4f);
     CHECK(tolerance.depth.at(30, 15) == Approx(4 * 0.3 / 16).epsilon(1e-3));  // (2 * 1.5 + 1) epsilon
     CHECK(tolerance.radius_px.at(30, 15) == Approx(3).epsilon(1e-3));
-    CHECK(tolerance.depth.at(33, 15) == Approx(4 * 0.3 / 16).epsilon(1e-3));  // 3.5 px from the centre, within radius + 1
+    CHECK(tolerance.depth.at(33, 15) ==
+          Approx(4 * 0.3 / 16).epsilon(1e-3));  // 3.5 px from the centre, within radius + 1
     CHECK(tolerance.depth.at(34, 15) == Approx(1e-4));
     CHECK(tolerance.radius_px.at(34, 15) == 0);
     CHECK(tolerance.depth.at(9, 24) == Approx(1e-4));

@@ -51,7 +51,7 @@ bool is_sub_pixel(Splat splat) {
 const float TILT = 0.3;
 const float MAX_STRETCH = 3.0;
 // Edge-on planes are hit nowhere; keeps the divisions finite.
-const float MIN_COSINE = 1e-6;
+const float MIN_COSINE = 1e-4;
 const float MIN_WEIGHT = 1.0 / 4096.0;
 // Variance of the prefilter, pixels^2. The thesis's 1 (3.22) blurs more than a pixel's box (variance 1/12) does: 0.3 is
 // the least that lets every splat reach a pixel centre, its footprint ending at sqrt(2 * 0.3) > sqrt(2) / 2 pixels.
@@ -100,9 +100,11 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swe
     vec3 p = centre;
     splat.plane_offset = vec2(0);
     if (crosses_near) {
-        splat.plane_offset = slope / steepness;  // it rises, or it would not cross
+        // A disk that faces the eye crosses by its thickness alone.
+        if (steepness > 0) splat.plane_offset = slope / steepness;
         p += radius * (splat.plane_offset.x * s + splat.plane_offset.y * t);
         splat.rise *= 2;
+        if (-p.z <= 0) return false;  // only the thickness reaches past the near plane, over the eye's head
     }
     splat.anchor_depth = -p.z;
     const vec3 ray = ORTHOGRAPHIC ? vec3(0, 0, -1) : vec3(p.xy / splat.anchor_depth, -1);
@@ -202,12 +204,16 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_
     hit.beside_disk = false;
     if (!hit.on_disk) {
         const vec2 change = skew_at(skew, uv, e, anchor_depth);
-        const float height = clamp(-dot(uv, change) / max(dot(change, change), 1e-30), -swell.y, swell.x);
+        const float plane_depth = ORTHOGRAPHIC ? anchor_depth - gd : anchor_depth;  // times e
+        // The part of the solid in front of the near plane.
+        const float near_height = (frame.near_plane * e - plane_depth) / skew.z;
+        const float low = e * skew.z > 0 ? max(-swell.y, near_height) : -swell.y;
+        const float high = e * skew.z > 0 ? swell.x : min(swell.x, near_height);
+        const float height = clamp(-dot(uv, change) / max(dot(change, change), 1e-30), low, high);
         const vec2 nearest = uv + height * change;
-        const float depth = ((ORTHOGRAPHIC ? anchor_depth - gd : anchor_depth) + height * skew.z) / e;
-        hit.beside_disk = dot(nearest, nearest) <= e * e && depth >= frame.near_plane;
+        hit.beside_disk = low <= high && dot(nearest, nearest) <= e * e;
         if (hit.beside_disk) {
-            hit.depth = depth;
+            hit.depth = (plane_depth + height * skew.z) / e;
             hit.uv = nearest / e;
         }
     }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace splice::bench {
 namespace {
@@ -40,6 +41,13 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
     json report = {{"device", renderer.device_name()}, {"clean", true}, {"models", json::array()}};
     Table table(
         {"pixels", "views", "inside", "holes", "lost", "grown", "in front", "worst behind", "lowest IoU", "faults in"});
+    // A model takes minutes: its row is printed when it is done.
+    std::vector<std::size_t> widths(9, 8);
+    for (const BenchModel& model : models)
+        widths[0] = std::max(widths[0], model.name.size());
+    table.reserve(widths);
+    fmt::print("{}, {}x{}\n\n{}", renderer.device_name(), options.width, options.height, table.last_line());
+    std::fflush(stdout);
     for (const BenchModel& bench_model : models) {
         show_progress("bake " + bench_model.name);
         const IndexedMesh mesh = load_mesh(bench_model.path);
@@ -73,14 +81,15 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
             }
         }
         if (!sum.clean()) report["clean"] = false;
+        show_progress("");
         table.add({bench_model.name, fmt::format("{}", views.size()), fmt::format("{}", sum.inside),
                    fmt::format("{}", sum.holes), fmt::format("{}", sum.lost), fmt::format("{}", sum.grown),
                    fmt::format("{}", sum.in_front), fmt::format("{:.2g}", sum.worst_behind / mesh.source_scale),
                    fmt::format("{:.4f}", lowest_iou), faulty});
+        fmt::print("{}", table.last_line());
+        std::fflush(stdout);
         report["models"].push_back({{"model", bench_model.name}, {"sum", to_json(sum, lowest_iou)}, {"views", views}});
     }
-    show_progress("");
-    fmt::print("{}, {}x{}\n\n{}", renderer.device_name(), options.width, options.height, table.text());
     return report;
 }
 

@@ -10,9 +10,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 
 namespace {
 using namespace splice;
@@ -48,13 +48,14 @@ void add_quality(CLI::App& command, CommandLine& line, std::size_t directions) {
         ->capture_default_str();
     command.add_option("--size", line.size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
     command.add_flag("--orthographic", line.quality.orthographic, "Parallel rays");
-    command.add_option("--epsilon-scale", line.quality.epsilon_scale, "Times each surfel's depth offset")
-        ->check(CLI::PositiveNumber)
+    command.add_option("--epsilon-scale", line.quality.epsilon_scale, "Times each surfel's depth offset, 0 to 100")
+        ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
     command.add_flag_callback(
         "--two-sided", [&] { line.quality.sides = Sides::kTwoSided; }, "Cull nothing, whatever the bake decided");
-    command.add_option("--h-max", line.quality.bake.sampling.h_max, "Largest surfel spacing, unit-box units")
-        ->check(CLI::PositiveNumber)
+    command
+        .add_option("--h-max", line.quality.bake.sampling.h_max, "Largest surfel spacing, unit-box units, 1e-5 to 1")
+        ->check(CLI::Range(1e-5, 1.0))
         ->capture_default_str();
     command
         .add_option("--triangle-share", line.quality.bake.cluster.triangle_share,
@@ -73,6 +74,13 @@ void parse_size(CommandLine& line) {
     line.quality.height = height;
 }
 
+ForcedRepresentation representation_of_name(const std::string& name) {
+    if (name == "hybrid") return ForcedRepresentation::kHybrid;
+    if (name == "triangles") return ForcedRepresentation::kTriangles;
+    if (name == "surfels") return ForcedRepresentation::kSurfels;
+    throw CLI::ValidationError("--representation", "'" + name + "' is none of hybrid, triangles, surfels");
+}
+
 int run(int argc, char** argv) {
     CommandLine line;
     line.folder = default_folder();
@@ -83,8 +91,8 @@ int run(int argc, char** argv) {
 
     CLI::App& bake = *app.add_subcommand("bake", "Seconds a stage, peak memory and results of splice-bake");
     add_common(bake, line);
-    bake.add_option("--runs", line.bake.runs, "Medians are taken over this many bakes")
-        ->check(CLI::PositiveNumber)
+    bake.add_option("--runs", line.bake.runs, "Medians are taken over this many bakes, 1 to 1000")
+        ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     bake.add_option("--with", line.bake.arguments, "An argument for splice-bake, e.g. --with=--triangle-share=0.19")
         ->take_all();
@@ -99,8 +107,8 @@ int run(int argc, char** argv) {
                     "1: the default view; more: of 26 around the model")
         ->check(CLI::Range(1, 26))
         ->capture_default_str();
-    capture.add_option("--frames", capture_line.quality.frames, "Timed frames a model")
-        ->check(CLI::PositiveNumber)
+    capture.add_option("--frames", capture_line.quality.frames, "Timed frames a model, 1 to 100000")
+        ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     capture.add_flag_callback(
         "--no-prefilter", [&] { capture_line.quality.prefilter = false; }, "Splats without the screen-space filter");
@@ -112,12 +120,10 @@ int run(int argc, char** argv) {
     holes.add_option("--directions", holes_line.quality.directions, "How many of the 26 directions around the model")
         ->check(CLI::Range(1, 26))
         ->capture_default_str();
-    const std::map<std::string, ForcedRepresentation> representations{{"hybrid", ForcedRepresentation::kHybrid},
-                                                                      {"triangles", ForcedRepresentation::kTriangles},
-                                                                      {"surfels", ForcedRepresentation::kSurfels}};
-    holes
-        .add_option("--representation", holes_line.quality.bake.cluster.representation, "hybrid, triangles or surfels")
-        ->transform(CLI::CheckedTransformer(representations).description(""));
+    holes.add_option_function<std::string>(
+        "--representation",
+        [&](const std::string& name) { holes_line.quality.bake.cluster.representation = representation_of_name(name); },
+        "hybrid (default), triangles or surfels");
 
     bench::GraphCommand graph_command;
     const CLI::App& graph = bench::add_graph_command(app, graph_command);
@@ -138,6 +144,8 @@ int run(int argc, char** argv) {
     } else {
         CommandLine& chosen = capture.parsed() ? capture_line : holes_line;
         parse_size(chosen);
+        SamplingOptions& sampling = chosen.quality.bake.sampling;
+        sampling.h_min = std::min(sampling.h_min, sampling.h_max);
         report_file = chosen.json;
         if (!report_file.empty()) check_output_path(report_file);
         const auto models = bench::bench_models(chosen.files, chosen.folder);

@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace splice {
 
@@ -35,6 +36,13 @@ std::vector<Camera> framed_path(const CaptureCommand& command, Framing framing, 
     return cameras;
 }
 
+// +y; along y, what --azimuth 0 has at the poles: -z seen from above, +z from below.
+glm::dvec3 default_up(const glm::dvec3& forward) {
+    const double sideways = std::hypot(forward.x, forward.z);
+    if (sideways > 1e-9 * glm::length(forward)) return {0, 1, 0};
+    return {0, 0, forward.y < 0 ? -1 : 1};
+}
+
 }  // namespace
 
 std::vector<Camera> camera_path(const CaptureCommand& command, const SceneDescription& scene, const Box& bounds) {
@@ -47,7 +55,7 @@ std::vector<Camera> camera_path(const CaptureCommand& command, const SceneDescri
     if (command.eye) {
         camera.eye = *command.eye;
         camera.target = *command.target;
-        camera.up = command.up.value_or(glm::dvec3(0, 1, 0));
+        camera.up = command.up.value_or(default_up(camera.target - camera.eye));
     }
     if (command.fov_degrees) camera.fov_y_degrees = *command.fov_degrees;
     if (command.orthographic && !camera.orthographic) {

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -147,10 +149,23 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     command.output = raw.output;
 }
 
+// A name that promises another format would be found out by the next program that reads the picture.
+void check_picture_format(const std::filesystem::path& output) {
+    std::string extension = output.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    for (const char* other : {".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".gif", ".tif", ".tiff", ".webp", ".exr", ".hdr",
+                              ".svg", ".pdf", ".avif", ".jxl"})
+        if (extension == other)
+            throw UsageError("-o " + output.string() + ": pictures are PNG; expected a name that ends in .png");
+}
+
 void check_combination(const CaptureCommand& command) {
     if (command.list_devices) return;
     if (command.input.empty()) throw UsageError("INPUT is missing (see --help)");
     if (command.output.empty()) throw UsageError("-o OUT.png is missing (see --help)");
+    check_picture_format(command.output);
+    if (command.orthographic && command.fov_degrees) throw UsageError("--orthographic excludes --fov");
     if (command.eye.has_value() != command.target.has_value())
         throw UsageError("--eye and --target are given together or not at all");
     if (command.up && !command.eye) throw UsageError("--up needs --eye and --target");
@@ -175,7 +190,8 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_option("--size", raw.size, "Pixels, default 512x512")->option_text("WxH");
     app.add_option("--eye", raw.eye, "Where the eye is, in the file's units")->option_text("X,Y,Z");
     app.add_option("--target", raw.target, "What it looks at")->option_text("X,Y,Z");
-    app.add_option("--up", raw.up, "Which way is up, default 0,1,0")->option_text("X,Y,Z");
+    app.add_option("--up", raw.up, "Which way is up, default 0,1,0; looking straight down 0,0,-1")
+        ->option_text("X,Y,Z");
     app.add_option("--fov", raw.fov, "Full vertical field of view in degrees, 1 to 170, default 40")
         ->option_text("DEGREES");
     app.add_option("--azimuth", raw.azimuth, "Frames the model from this side: 0 front (+z), 90 right (+x); default 30")

@@ -31,6 +31,16 @@ FileKind kind_of_file(const std::filesystem::path& path) {
     return FileKind::kMesh;
 }
 
+// Where a scene names a file that is not there or wants a model file baked anew, the scene is what is wrong.
+void check_model_file(const SceneModel& model, const std::filesystem::path& path, const std::string& scene_name,
+                      const std::string& place) {
+    if (!std::ifstream(path, std::ios::binary))
+        throw InputError(scene_name, place + "/file", "cannot read " + path.string() + ": " + std::strerror(errno));
+    if (!model.bake_members.empty() && kind_of_file(path) == FileKind::kModel)
+        throw InputError(scene_name, place + "/" + model.bake_members.front(),
+                         "expected a mesh or a shape beside it, got a model file, which is baked already");
+}
+
 // What makes two models of a scene the same: where they come from and how they are baked.
 using ModelKey = std::tuple<std::string, std::map<std::string, double>, SceneRepresentation, double, double>;
 
@@ -43,6 +53,7 @@ class Loader {
                                          const std::string& place) {
         const auto* shape = std::get_if<ShapeDescription>(&model.source);
         const auto* path = std::get_if<std::filesystem::path>(&model.source);
+        if (path) check_model_file(model, *path, scene_name, place);
         const ModelKey key{shape ? "shape " + shape->kind : "file " + path->string(),
                            shape ? shape->parameters : std::map<std::string, double>{}, model.representation,
                            model.triangle_share.value_or(-1), model.max_spacing.value_or(-1)};

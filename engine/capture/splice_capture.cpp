@@ -64,6 +64,10 @@ void check_files(const CaptureCommand& command) {
     check_distinct_files(inputs, outputs);
 }
 
+std::string counted(std::uint64_t count, const std::string& noun) {
+    return std::to_string(count) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
 int capture(const CaptureCommand& command) {
     check_files(command);
     check_output_path(command.output);
@@ -89,8 +93,8 @@ int capture(const CaptureCommand& command) {
     if (command.stats) write_text_file(*command.stats, stats_json(files));
     if (command.quiet) return 0;
     const FrameStats& last = files.back().stats;
-    std::cout << last.surfels_drawn << " surfels and " << last.triangles_drawn << " triangles on " << last.device
-              << "\nwrote " << files.front().path;
+    std::cout << counted(last.surfels_drawn, "surfel") << " and " << counted(last.triangles_drawn, "triangle") << " on "
+              << last.device << "\nwrote " << files.front().path;
     if (files.size() > 1) std::cout << " ... " << files.back().path;
     std::cout << std::endl;
     return 0;

@@ -61,7 +61,7 @@ Transform read_transform(const JsonValue& value) {
     value.expect_members({"scale", "rotation", "translation"});
     Transform transform;
     if (const auto scale = value.member("scale"))
-        transform.scale = scale->number(1 / kLargest, kLargest, "a positive number");
+        transform.scale = scale->number(1 / kLargest, kLargest, "a positive number from 1e-30 to 1e30");
     if (const auto rotation = value.member("rotation")) {
         rotation->expect_members({"axis", "angle"});
         const glm::dvec3 axis = glm::normalize(direction(rotation->required("axis")));
@@ -106,6 +106,10 @@ SceneModel read_model(const JsonValue& value, const std::filesystem::path& folde
         model.triangle_share = share->number(0, 1, "a number from 0 to 1");
     if (const auto spacing = value.member("max_spacing"))
         model.max_spacing = spacing->number(1e-4, 1, "a number from 0.0001 to 1");
+    if (model.triangle_share && model.representation != SceneRepresentation::kHybrid)
+        value.member("triangle_share")->fail("\"representation\": \"hybrid\" beside it");
+    for (const char* name : {"representation", "triangle_share", "max_spacing"})
+        if (value.member(name)) model.bake_members.emplace_back(name);
     return model;
 }
 
@@ -156,7 +160,7 @@ Light read_light(const JsonValue& value) {
     } else {
         if (const auto extra = value.member("direction")) extra->fail("nothing: the light is a point");
         light.position = value.required("position").vector();
-        light.range = value.required("range").number(1 / kLargest, kLargest, "a positive number");
+        light.range = value.required("range").number(1 / kLargest, kLargest, "a positive number from 1e-30 to 1e30");
     }
     if (const auto colour = value.member("colour")) light.colour = linear_colour(*colour);
     if (const auto intensity = value.member("intensity"))

@@ -33,6 +33,7 @@ struct SceneModel {
     SceneRepresentation representation = SceneRepresentation::kHybrid;  // of meshes and shapes, baked on loading
     std::optional<double> triangle_share;                               // the same
     std::optional<double> max_spacing;                                  // the same: of surfels, unit-box units
+    std::vector<std::string> bake_members;  // those of the last three that the file gives, by name
 };
 
 struct SceneDescription {

@@ -123,8 +123,9 @@ MemoryAllocator::Block& MemoryAllocator::new_block(uint32_t type, VkDeviceSize b
 Memory MemoryAllocator::allocate(const VkMemoryRequirements& requirements, MemoryUse use, bool image) {
     const uint32_t type = memory_type(requirements.memoryTypeBits, use);
     if (requirements.size > max_allocation_) {
-        throw DeviceError("a resource of " + std::to_string(requirements.size) + " bytes exceeds the device's " +
-                          std::to_string(max_allocation_) + " bytes an allocation");
+        throw DeviceError(std::string(image ? "an image" : "a buffer") + " of " + std::to_string(requirements.size) +
+                          " bytes is too large for the device, which allocates at most " +
+                          std::to_string(max_allocation_) + " bytes at once");
     }
     const auto place = [&](Block& block) -> Memory {
         for (size_t i = 0; i < block.holes.size(); ++i) {

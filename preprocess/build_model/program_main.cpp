@@ -39,6 +39,14 @@ void flush_output() {
                       (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
 }
 
+// "--quiet=3" is a slip, not a flag.
+void refuse_flag_values(CLI::App& app) {
+    for (CLI::Option* option : app.get_options())
+        if (option->get_expected_max() == 0) option->disable_flag_override();
+    for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+        refuse_flag_values(*command);
+}
+
 }  // namespace
 
 int run_program(const std::string& program, const std::function<int()>& body) {
@@ -61,6 +69,7 @@ int run_program(const std::string& program, const std::function<int()>& body) {
 }
 
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+    refuse_flag_values(app);
     try {
         app.parse(argc, argv);
         return true;

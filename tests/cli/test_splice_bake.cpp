@@ -78,6 +78,9 @@ TEST_CASE("splice-bake --help names every option with its unit and gives example
                              "seconds",
                              "bytes",
                              "degrees",
+                             "geometric 0.9, thesis 1.8",
+                             "geometric no limit, thesis 0.1625",
+                             "thesis 5.69 median triangles",
                              "Examples:",
                              "Exit code"})
         CHECK_THAT(outcome.out, Contains(text));
@@ -222,6 +225,7 @@ TEST_CASE("splice-bake refuses every malformed option with one line and exit cod
                                                          {"-x"},
                                                          {"second.obj"},
                                                          {"--quiet=maybe"},
+                                                         {"--no-prune=3"},
                                                          {"--triangle-share", "0.5", "--triangle-share", "0.6"},
                                                          {"--triangle-share", "0.5", "--representation", "triangles"},
                                                          {"-o", "cube.obj"},

@@ -49,11 +49,13 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
         {R"({"models": [{"shape": {"kind": "cube", "cells": "x"}}]})",
          "scene.json: /models/0/shape/cells: expected a number, got \"x\""},
         {with_model(R"("transform": {"scale": -1})"),
-         "scene.json: /models/0/transform/scale: expected a positive number, got -1"},
+         "scene.json: /models/0/transform/scale: expected a positive number from 1e-30 to 1e30, got -1"},
         {with_model(R"("transform": {"scale": 0})"),
-         "scene.json: /models/0/transform/scale: expected a positive number, got 0"},
+         "scene.json: /models/0/transform/scale: expected a positive number from 1e-30 to 1e30, got 0"},
+        {with_model(R"("transform": {"scale": 1e38})"),
+         "scene.json: /models/0/transform/scale: expected a positive number from 1e-30 to 1e30, got 1e+38"},
         {with_model(R"("transform": {"scale": [1, 2, 3]})"),
-         "scene.json: /models/0/transform/scale: expected a positive number, got an array of 3"},
+         "scene.json: /models/0/transform/scale: expected a positive number from 1e-30 to 1e30, got an array of 3"},
         {with_model(R"("transform": {"translation": [1, 2]})"),
          "scene.json: /models/0/transform/translation: expected three numbers, got an array of 2"},
         {with_model(R"("transform": {"translation": [1, 2, "x"]})"),
@@ -72,6 +74,8 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
          "\"points\""},
         {with_model(R"("triangle_share": 1.5)"),
          "scene.json: /models/0/triangle_share: expected a number from 0 to 1, got 1.5"},
+        {with_model(R"("triangle_share": 0.5, "representation": "triangles")"),
+         "scene.json: /models/0/triangle_share: expected \"representation\": \"hybrid\" beside it, got 0.5"},
         {with(R"("camera": {"eye": [0, 0, 1]})"), "scene.json: /camera: member \"target\" is missing"},
         {with(R"("camera": {"eye": [0, 0, 0], "target": [0, 0, 0]})"),
          "scene.json: /camera: expected eye and target apart, and up in another direction, got an object"},
@@ -94,7 +98,7 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
         {with(R"("lighting": {"lights": [{"type": "point", "position": [0, 0, 0]}]})"),
          "scene.json: /lighting/lights/0: member \"range\" is missing"},
         {with(R"("lighting": {"lights": [{"type": "point", "position": [0, 0, 0], "range": 0}]})"),
-         "scene.json: /lighting/lights/0/range: expected a positive number, got 0"},
+         "scene.json: /lighting/lights/0/range: expected a positive number from 1e-30 to 1e30, got 0"},
         {with(R"("lighting": {"lights": [{"type": "directional", "direction": [0, 0, 1], "colour": "pink"}]})"),
          "scene.json: /lighting/lights/0/colour: expected a colour like \"#ff8000\", got \"pink\""},
         {with(R"("background": 3)"),
@@ -128,7 +132,7 @@ TEST_CASE("a scene that says everything is read as it says") {
             {"file": "a.splice", "transform": {"scale": 2, "rotation": {"axis": [0, 0, 2], "angle": 90},
                                                "translation": [1, 2, 3]}},
             {"shape": {"kind": "torus-knot", "p": 3}, "unit_box": true, "representation": "surfels",
-             "triangle_share": 0.5}],
+             "max_spacing": 0.5}],
         "camera": {"eye": [0, 0, 5], "target": [0, 0, 0], "up": [1, 0, 0], "fov": 30, "orthographic": true, "height": 4},
         "lighting": {"ambient": [0.1, 0.2, 0.3], "specular": 0.5, "shininess": 8, "lights": [
             {"type": "point", "position": [1, 1, 1], "range": 2, "colour": "#ffffff", "intensity": 3},
@@ -148,7 +152,8 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK(shape.parameters == std::map<std::string, double>{{"p", 3}});
     CHECK(scene.models[1].unit_box);
     CHECK(scene.models[1].representation == SceneRepresentation::kSurfels);
-    CHECK(scene.models[1].triangle_share == 0.5);
+    CHECK(scene.models[1].max_spacing == 0.5);
+    CHECK(scene.models[1].bake_members == std::vector<std::string>{"representation", "max_spacing"});
     REQUIRE(scene.camera);
     CHECK(scene.camera->orthographic);
     CHECK(scene.camera->orthographic_height == 4);

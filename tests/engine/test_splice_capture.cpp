@@ -166,6 +166,22 @@ TEST_CASE("an explicit camera sees what it is pointed at") {
     }
 }
 
+TEST_CASE("looking straight down or up needs no --up") {
+    const TemporaryFolder folder;
+    write_text(folder / "tetra.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    for (const auto& [eye, up] : {std::pair{"0.5,9,0.5", "0,0,-1"}, std::pair{"0.5,-9,0.5", "0,0,1"}}) {
+        CAPTURE(eye);
+        const std::vector<std::string> arguments{"tetra.obj", "--size", "32x32",    "--quiet",
+                                                 "--eye",     eye,      "--target", "0.5,0,0.5"};
+        std::vector<std::string> without = arguments, with = arguments;
+        without.insert(without.end(), {"-o", "without.png"});
+        with.insert(with.end(), {"-o", "with.png", "--up", up});
+        REQUIRE(capture(folder, without).exit_code == 0);
+        REQUIRE(capture(folder, with).exit_code == 0);
+        CHECK(read_png(folder / "without.png").rgba == read_png(folder / "with.png").rgba);
+    }
+}
+
 TEST_CASE("a transparent background is transparent in the file") {
     const TemporaryFolder folder;
     write_small_model(folder / "a.splice");
@@ -222,6 +238,9 @@ TEST_CASE("wrong usage is one line and exit code 2") {
         {{"a.splice", "-o", "b.png", "--graph", "b.svg"},
          "--graph: expected a file that ends in .dot, .mmd or .json, got \"b.svg\""},
         {{"a.splice", "-o", "b.png", "--device", "banana"}, "banana"},
+        {{"a.splice", "-o", "b.jpg"}, "-o b.jpg: pictures are PNG"},
+        {{"a.splice", "-o", "b.TIFF"}, "pictures are PNG"},
+        {{"a.splice", "-o", "b.png", "--orthographic", "--fov", "30"}, "--orthographic excludes --fov"},
     };
     for (const auto& [arguments, expected] : table) {
         const Outcome outcome = capture(folder, arguments);
@@ -244,6 +263,7 @@ TEST_CASE("input that cannot be used is one line and exit code 1, and leaves no 
     write_text(folder / "empty.json", "");
     write_text(folder / "wrong.json", R"({"models": [{"file": "a.splice", "transform": {"scale": -1}}]})");
     write_text(folder / "missing.json", R"({"models": [{"file": "gone.splice"}]})");
+    write_text(folder / "baked.json", R"({"models": [{"file": "a.splice", "representation": "surfels"}]})");
     write_text(folder / "loop.json", R"({"models": [{"file": "loop.json"}]})");
     write_text(folder / "shape.json", R"({"models": [{"shape": {"kind": "blob"}}]})");
     write_text(folder / "cells.json", R"({"models": [{"shape": {"kind": "cube", "cells": 0.5}}]})");
@@ -258,8 +278,11 @@ TEST_CASE("input that cannot be used is one line and exit code 1, and leaves no 
         {{"cut.splice", "-o", "b.png"}, "cut.splice"},
         {{"flipped.splice", "-o", "b.png"}, "flipped.splice"},
         {{"empty.json", "-o", "b.png"}, "empty.json: line 1: not valid JSON"},
-        {{"wrong.json", "-o", "b.png"}, "wrong.json: /models/0/transform/scale: expected a positive number, got -1"},
-        {{"missing.json", "-o", "b.png"}, "gone.splice"},
+        {{"wrong.json", "-o", "b.png"},
+         "wrong.json: /models/0/transform/scale: expected a positive number from 1e-30 to 1e30, got -1"},
+        {{"missing.json", "-o", "b.png"}, "missing.json: /models/0/file: cannot read gone.splice: No such file"},
+        {{"baked.json", "-o", "b.png"},
+         "baked.json: /models/0/representation: expected a mesh or a shape beside it, got a model file"},
         {{"loop.json", "-o", "b.png"}, "loop.json: a scene file where a model or a mesh is expected"},
         {{"shape.json", "-o", "b.png"}, "shape.json: /models/0/shape/kind: expected one of cube, "},
         {{"cells.json", "-o", "b.png"},

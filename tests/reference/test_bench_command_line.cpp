@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 using namespace splice;
 
@@ -65,6 +67,22 @@ TEST_CASE("splice-bench answers a wrong command line with one line and exit code
         CHECK(outcome.exit_code == 2);
         CHECK(one_line(outcome.err));
         CHECK(outcome.out.empty());
+    }
+}
+
+TEST_CASE("splice-bench says in plain words what an option allows") {
+    for (const auto& [arguments, allowed] : std::vector<std::pair<const char*, const char*>>{
+             {"bake --runs 0", "1 to 1000"},
+             {"capture --frames -1", "1 to 100000"},
+             {"holes --representation points", "'points' is none of hybrid, triangles, surfels"},
+             {"capture --h-max 2", "--h-max"},
+             {"capture --epsilon-scale -1", "--epsilon-scale"}}) {
+        const Outcome outcome = bench(arguments);
+        INFO(arguments << ": " << outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK(one_line(outcome.err));
+        CHECK(outcome.err.find(allowed) != std::string::npos);
+        CHECK(outcome.err.size() < 120);
     }
 }
 

@@ -3,7 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 #include "octahedral.glsl"
+#include "colour.glsl"
+#include "lighting.glsl"
 #include "splat.glsl"
+#include "surfel_frame.glsl"
 #include "surfel_vertex.glsl"
 
 layout(location = 0) flat out vec4 out_anchor_g;
@@ -15,7 +18,7 @@ layout(location = 4) flat out vec2 out_swell;
 void main() {
     Splat splat;
     SurfelFrame surfel;
-    const bool drawn = surfel_splat(splat, surfel);
+    const bool drawn = surfel_splat(vertex_record(), splat, surfel);
     place_primitive(drawn, splat.anchor, splat.disk_bounds);
     out_anchor_g = vec4(splat.anchor, splat.g);
     out_plane_map = splat.plane_map;

@@ -9,6 +9,9 @@
 #include "shaders/surfel_normalise_frag.h"
 #include "shaders/surfel_visibility_frag.h"
 #include "shaders/surfel_visibility_vert.h"
+#include "shaders/tile_count_comp.h"
+#include "shaders/tile_gather_comp.h"
+#include "shaders/tile_setup_comp.h"
 #include "shaders/triangle_frag.h"
 #include "shaders/triangle_vert.h"
 #include "tests/support/test_files.h"
@@ -89,6 +92,8 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"surfel_visibility.vert", surfel_visibility_vert},
             {"surfel_visibility.frag", surfel_visibility_frag},
             {"surfel_normalise.frag", surfel_normalise_frag},
+            {"tile_setup.comp", tile_setup_comp},
+            {"tile_gather.comp", tile_gather_comp},
             {"triangle.vert", triangle_vert},
             {"triangle.frag", triangle_frag}};
 }
@@ -131,7 +136,9 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
                       {sizeof(InstanceConstants),
                        {MEMBER(InstanceConstants, model_to_view), MEMBER(InstanceConstants, scale),
                         MEMBER(InstanceConstants, epsilon_scale), MEMBER(InstanceConstants, flags),
-                        MEMBER(InstanceConstants, first_patch)}});
+                        MEMBER(InstanceConstants, first_patch), MEMBER(InstanceConstants, first_surfel),
+                        MEMBER(InstanceConstants, surfel_count), MEMBER(InstanceConstants, first_splat),
+                        MEMBER(InstanceConstants, padding)}});
 }
 
 TEST_CASE("constants that C++ and GLSL share have the same values") {
@@ -146,12 +153,12 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_POWERS")) == kSwellStep);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_ONES")) == kSwellOne);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
-    const double lean = constant("surfel_attribute.vert", "LARGEST_LEAN");
-    const double turn = constant("surfel_attribute.vert", "LARGEST_TURN");
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS")) == kSwellStep);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    const double lean = constant("include/surfel_frame.glsl", "LARGEST_LEAN");
+    const double turn = constant("include/surfel_frame.glsl", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));
     CHECK(bend == std::vector<double>{lean, lean, turn, turn, turn});
 }

@@ -38,8 +38,8 @@ json to_json(const SurfaceReport& report, double iou) {
 json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& options) {
     Renderer renderer({options.device, false});
     json report = {{"device", renderer.device_name()}, {"clean", true}, {"models", json::array()}};
-    Table table({"pixels", "views", "inside", "holes", "lost", "grown", "in front", "worst behind",
-                 "lowest IoU", "faults in"});
+    Table table(
+        {"pixels", "views", "inside", "holes", "lost", "grown", "in front", "worst behind", "lowest IoU", "faults in"});
     for (const BenchModel& bench_model : models) {
         show_progress("bake " + bench_model.name);
         const IndexedMesh mesh = load_mesh(bench_model.path);
@@ -75,9 +75,8 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
         if (!sum.clean()) report["clean"] = false;
         table.add({bench_model.name, fmt::format("{}", views.size()), fmt::format("{}", sum.inside),
                    fmt::format("{}", sum.holes), fmt::format("{}", sum.lost), fmt::format("{}", sum.grown),
-                   fmt::format("{}", sum.in_front),
-                   fmt::format("{:.2g}", sum.worst_behind / mesh.source_scale), fmt::format("{:.4f}", lowest_iou),
-                   faulty});
+                   fmt::format("{}", sum.in_front), fmt::format("{:.2g}", sum.worst_behind / mesh.source_scale),
+                   fmt::format("{:.4f}", lowest_iou), faulty});
         report["models"].push_back({{"model", bench_model.name}, {"sum", to_json(sum, lowest_iou)}, {"views", views}});
     }
     show_progress("");

@@ -7,7 +7,7 @@ namespace splice {
 
 namespace {
 
-constexpr std::uint64_t kRecordBytes = 128, kBoundsBytes = 8, kIndexBytes = 4;
+constexpr std::uint64_t kRecordBytes = 96, kBoundsBytes = 8, kIndexBytes = 4;
 // Chunks are what orders the lists. Few make little work for the prefix sum, many make work for all of a device's
 // units.
 constexpr std::uint64_t kFewestChunks = 16, kMostChunks = 64, kChunkSplats = 4096;

@@ -1,6 +1,7 @@
 // Attribute pass: every surfel's lit colour, weighted by the EWA resampling filter (thesis 3.4.2).
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "frame.glsl"
 #include "octahedral.glsl"
 #include "colour.glsl"

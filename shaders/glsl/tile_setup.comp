@@ -1,6 +1,7 @@
 // Tile backend: every surfel of a range becomes the record of its splat and the tiles it touches, once a frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "frame.glsl"
 #include "octahedral.glsl"
 #include "colour.glsl"

@@ -17,10 +17,11 @@ using namespace splice::test;
 namespace {
 
 // Both backends compute the same splats; single precision decides otherwise at few pixels only, where a ray meets a
-// disk's very edge or two depths are equal. Share of the pixels that may differ by more than a step of 8 bits.
+// disk's very edge or two depths are equal. Share of the pixels that may differ by more than a step of 8 bits; all the
+// others are at least this near.
 constexpr int kSteps = 1;
-constexpr double kOddShare = 2e-4;
-constexpr double kLeastPsnr = 50;
+constexpr double kOddShare = 4e-4;
+constexpr double kLeastPsnr = 60;
 
 struct TileCase {
     const char* name;
@@ -131,7 +132,7 @@ std::vector<TileCase> tile_cases() {
 
 struct Difference {
     int largest = 0;
-    double odd_share = 0, psnr = 0;
+    double odd_share = 0, psnr = 0;  // psnr: without the odd ones
 };
 
 Difference difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
@@ -141,13 +142,18 @@ Difference difference(const std::vector<std::uint8_t>& a, const std::vector<std:
     std::size_t odd = 0;
     for (std::size_t pixel = 0; pixel < a.size(); pixel += 4) {
         int worst = 0;
+        double pixel_squares = 0;
         for (std::size_t i = pixel; i < pixel + 4; ++i) {
             const int off = std::abs(int{a[i]} - int{b[i]});
             worst = std::max(worst, off);
-            squares += off * off;
+            pixel_squares += off * off;
         }
         result.largest = std::max(result.largest, worst);
-        odd += worst > kSteps ? 1 : 0;
+        if (worst > kSteps) {
+            ++odd;
+        } else {
+            squares += pixel_squares;
+        }
     }
     result.odd_share = static_cast<double>(odd) / static_cast<double>(a.size() / 4);
     result.psnr = squares == 0 ? 1000 : 10 * std::log10(255.0 * 255 * static_cast<double>(a.size()) / squares);

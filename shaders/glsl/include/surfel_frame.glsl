@@ -62,28 +62,52 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
 const vec2 LARGEST_LEAN = vec2(1);
 const vec3 LARGEST_TURN = vec3(0.5);
 
-// `side`: 1, or -1 where a two-sided surface is seen from behind. `uv`: on the disk, in radii.
-vec3 colour_at(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
-    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
-    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
-    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
-    const vec3 normal = normalize(surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t);
-    const vec3 position = surfel.centre + surfel.radius * (uv.x * surfel.s + uv.y * surfel.t);
-    return view_colour(decode_srgb(record.colour), side * normal, position, record.patch_number, true);
-}
-
 // Lit once a surfel, to first order: the colour at the centre and how it changes along both tangents, a radius, as the
 // shading normal turns.
 struct SurfelColour {
     vec3 centre, along_u, along_v;
 };
 
+// The centre, and both ends of both diameters.
+const int LIT_POINTS = 5;
+const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0, 1), vec2(0, -1));
+
+// `side`: 1, or -1 where a two-sided surface is seen from behind. `uv`: on the disk, in radii.
+vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
+    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
+    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
+    return side * normalize(surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t);
+}
+
+// All points under one light before the next light: reading a light costs more than using it.
 SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
     const float side = dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1;
+    vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
+    [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
+        normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);
+        positions[p] = surfel.centre + surfel.radius * (LIT_AT[p].x * surfel.s + LIT_AT[p].y * surfel.t);
+        diffuse[p] = frame.ambient;
+        highlights[p] = vec3(0);
+    }
+    if (VIEW != VIEW_NORMALS) {
+        for (uint i = 0; i < frame.light_count; ++i) {
+            const LightRecord record = lights[i];
+            [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
+                const Light light = light_at(record, normals[p], positions[p]);
+                diffuse[p] += light.diffuse;
+                highlights[p] += light.highlight;
+            }
+        }
+    }
+    const vec3 albedo = view_albedo(decode_srgb(record.colour), record.patch_number, true);
+    [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
+        lit[p] = VIEW == VIEW_NORMALS ? normals[p] * 0.5 + 0.5 : albedo * diffuse[p] + frame.specular * highlights[p];
+    }
     SurfelColour colour;
-    colour.centre = colour_at(record, surfel, side, vec2(0));
-    colour.along_u = 0.5 * (colour_at(record, surfel, side, vec2(1, 0)) - colour_at(record, surfel, side, vec2(-1, 0)));
-    colour.along_v = 0.5 * (colour_at(record, surfel, side, vec2(0, 1)) - colour_at(record, surfel, side, vec2(0, -1)));
+    colour.centre = lit[0];
+    colour.along_u = 0.5 * (lit[1] - lit[2]);
+    colour.along_v = 0.5 * (lit[3] - lit[4]);
     return colour;
 }
 

@@ -17,7 +17,7 @@ layout(set = 2, binding = 0, std140) uniform TileUniforms {
 } tiles;
 
 struct TileSplat {
-    uvec4 words[8];
+    uvec4 words[6];  // tile_record.glsl
 };
 layout(set = 2, binding = 1, std430) buffer SplatRecords { TileSplat records[]; };
 // Tiles touched: minimum and, beyond it, maximum x (16 bits each), then y; 0 where nothing is.

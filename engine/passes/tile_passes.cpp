@@ -16,7 +16,7 @@ namespace splice {
 namespace {
 
 constexpr VkShaderStageFlags kCompute = VK_SHADER_STAGE_COMPUTE_BIT;
-// local_size_x of the shaders.
+// Invocations of a workgroup; of the setup, surfels.
 constexpr std::uint32_t kSetupGroup = 64, kChunkGroup = 8, kScanGroup = 64;
 constexpr std::uint32_t kWidestDispatch = 65535;  // workgroups, of every device
 

@@ -189,9 +189,10 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_flag("--orthographic", command.orthographic, "Parallel rays");
     app.add_option("--orbit", raw.orbit, "N pictures around the model: OUT-000.png and so on")->option_text("N");
     app.add_option("--view", raw.view, view_help())->option_text("VIEW");
-    app.add_option("--backend", raw.backend,
-                   "What draws surfels: sprite (point sprites, the reference), tile (compute, for software devices) or "
-                   "auto; default sprite. A frame that tile cannot draw falls back to sprite; --stats tells")
+    app.add_option(
+           "--backend", raw.backend,
+           "What draws surfels: sprite (point sprites, default), tile (compute shaders) or auto (tile on software "
+           "devices, else sprite). Sprites draw what tiles cannot; --stats tells")
         ->option_text("auto|sprite|tile");
     app.add_option("--background", raw.background, "#rrggbb, a name (white, black, grey, sky ...) or transparent")
         ->option_text("COLOUR");

@@ -99,7 +99,7 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
     reserve_pixels(kTexelBytes * settings.width * settings.height);
     Backend backend = Backend::kAuto;
     do {
-        backend = choose_backend(settings.backend, passes, frame, draws);
+        backend = choose_backend(settings.backend, device, passes, frame, draws);
         if (backend == Backend::kTile) passes.tile.prepare(frame, draws);
         graph.clear();
         graph::Bindings bindings;

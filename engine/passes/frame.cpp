@@ -24,10 +24,10 @@ VkFormat picture_format(View view) {
     return is_numeric(view) ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
 }
 
-Backend choose_backend(Backend wanted, const FramePasses& passes, const FrameSettings& settings,
-                       const DrawList& draws) {
-    if (wanted == Backend::kTile && passes.tile.can_draw(settings, draws)) return Backend::kTile;
-    return Backend::kSprite;
+Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
+                       const FrameSettings& settings, const DrawList& draws) {
+    const bool tiles = wanted == Backend::kTile || (wanted == Backend::kAuto && device.info().is_cpu());
+    return tiles && passes.tile.can_draw(settings, draws) ? Backend::kTile : Backend::kSprite;
 }
 
 graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes, Backend backend,

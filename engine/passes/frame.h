@@ -35,8 +35,9 @@ struct FramePasses {
     SurfelNormalisePass surfel_normalise;
 };
 
-/// What draws a frame: what was asked for where it can, else sprites; never kAuto.
-Backend choose_backend(Backend wanted, const FramePasses& passes, const FrameSettings& settings, const DrawList& draws);
+/// What draws a frame: what was asked for where it can, else sprites; kAuto: tiles on software devices. Never kAuto.
+Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
+                       const FrameSettings& settings, const DrawList& draws);
 
 /// Format of the picture: 8-bit RGBA, sRGB-encoded by the shader, alpha coverage; or float for numeric views, where
 /// uncovered pixels keep +infinity.

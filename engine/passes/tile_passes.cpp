@@ -36,11 +36,34 @@ constexpr std::uint32_t groups(std::uint64_t invocations, std::uint32_t size) {
     return static_cast<std::uint32_t>((invocations + size - 1) / size);
 }
 
+// The shaders hand splats round within a subgroup of at least a workgroup's invocations, sample the depth buffer and
+// store the accumulation.
+bool supports_tiles(const gpu::Device& device) {
+    VkPhysicalDeviceSubgroupProperties subgroups{};
+    subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &subgroups;
+    vkGetPhysicalDeviceProperties2(device.physical(), &properties);
+    constexpr VkSubgroupFeatureFlags needed = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT |
+                                              VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+    const VkFormat accumulation =
+        device.first_supported({VK_FORMAT_R32G32B32A32_SFLOAT},
+                               VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT);
+    const VkFormat depth =
+        device.first_supported({device.depth_stencil_format()},
+                               VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    return subgroups.subgroupSize >= kTileWidth && (subgroups.supportedOperations & needed) == needed &&
+           (subgroups.supportedStages & kCompute) != 0 && accumulation != VK_FORMAT_UNDEFINED &&
+           depth != VK_FORMAT_UNDEFINED;
+}
+
 }  // namespace
 
 TilePasses::TilePasses(gpu::Device& device, const FrameData& data)
     : device_(device),
       data_(data),
+      supported_(supports_tiles(device)),
       buffers_(device),
       surfel_layout_(surfel_set_layout(device)),
       tile_layout_(device, {{kUniforms, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kCompute},
@@ -72,7 +95,8 @@ std::uint64_t TilePasses::entries_for(const DrawList& draws) const {
 
 bool TilePasses::can_draw(const FrameSettings& settings, const DrawList& draws) const {
     // The visibility view shows the depth buffer, which this backend does not write.
-    return settings.view != View::kVisibility && buffers_.fits(settings, draws.surfels, entries_for(draws));
+    return supported_ && settings.view != View::kVisibility &&
+           buffers_.fits(settings, draws.surfels, entries_for(draws));
 }
 
 void TilePasses::prepare(const FrameSettings& settings, const DrawList& draws) {

@@ -17,7 +17,7 @@ class TilePasses {
   public:
     TilePasses(gpu::Device& device, const FrameData& data);
 
-    /// Whether the backend can draw this frame: the view, and the device's limits.
+    /// Whether the backend can draw this frame: the view, the device's abilities and its limits.
     bool can_draw(const FrameSettings& settings, const DrawList& draws) const;
     /// Before add(). No submitted work may still use the frame before.
     void prepare(const FrameSettings& settings, const DrawList& draws);
@@ -42,6 +42,7 @@ class TilePasses {
 
     gpu::Device& device_;
     const FrameData& data_;
+    bool supported_;
     TileBuffers buffers_;
     TileHandles handles_;
     FrameTargets targets_;

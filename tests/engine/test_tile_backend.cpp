@@ -231,10 +231,16 @@ TEST_CASE("a view that tiles cannot draw falls back to sprites and says so") {
     Renderer renderer({});
     HandmadeModel model;
     model.add_surfels(sheet({-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, 8));
+    const Scene scene = scene_of(renderer.load(view_of(model.model())));
     CaptureSettings settings;
     settings.backend = Backend::kTile;
     settings.view = View::kVisibility;
-    CHECK(renderer.render(scene_of(renderer.load(view_of(model.model()))), settings).stats.backend == Backend::kSprite);
+    CHECK(renderer.render(scene, settings).stats.backend == Backend::kSprite);
+    settings.backend = Backend::kAuto;
+    CHECK(renderer.render(scene, settings).stats.backend == Backend::kSprite);
+    settings.view = View::kShaded;
+    const bool software = renderer.device_name().find("llvmpipe") != std::string::npos;
+    CHECK(renderer.render(scene, settings).stats.backend == (software ? Backend::kTile : Backend::kSprite));
 }
 
 TEST_CASE("lists without room grow until a frame is complete") {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "engine/render_graph/export/export.h"
+#include "engine/scene/backend.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
@@ -40,7 +41,8 @@ struct CaptureSettings {
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
-    bool force_quads = false;                         // draw every surfel as an oriented quad, none as a point sprite
+    Backend backend = Backend::kSprite;
+    bool force_quads = false;  // draw every surfel as an oriented quad, none as a point sprite
 };
 
 struct PassTime {
@@ -50,9 +52,10 @@ struct PassTime {
 
 struct FrameStats {
     std::string device;
-    double frame_ms = 0;              // submission to completion of the frame, readback included
-    std::vector<PassTime> passes;     // in order of execution
-    std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
+    Backend backend = Backend::kSprite;  // that drew the frame
+    double frame_ms = 0;                 // submission to completion of the frame, readback included
+    std::vector<PassTime> passes;        // in order of execution
+    std::uint64_t surfels_drawn = 0;     // sent to the device after culling by patch
     std::uint64_t triangles_drawn = 0;
     std::uint64_t covered_pixels = 0;
     double overlap_mean = 0;  // surfels contributing to a pixel, over pixels with any; with want_overlap

@@ -82,6 +82,14 @@ View parse_view(const std::string& text) {
     throw UsageError("--view: expected one of " + list + ", got \"" + text + "\"");
 }
 
+Backend parse_backend(const std::string& text) {
+    if (const auto backend = backend_of_name(text)) return *backend;
+    std::string list;
+    for (const BackendName& known : kBackendNames)
+        list += (list.empty() ? "" : ", ") + std::string(known.name);
+    throw UsageError("--backend: expected one of " + list + ", got \"" + text + "\"");
+}
+
 Background parse_background(const std::string& text) {
     Background background;
     background.transparent = text == "transparent";
@@ -110,7 +118,7 @@ std::string view_help() {
 
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
-    std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view,
+    std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
         background, epsilon_scale, prefilter;
     bool one_sided = false, two_sided = false;
 };
@@ -132,6 +140,7 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
         command.orbit = static_cast<std::uint32_t>(frames);
     }
     if (!raw.view.empty()) command.view = parse_view(raw.view);
+    if (!raw.backend.empty()) command.backend = parse_backend(raw.backend);
     if (!raw.background.empty()) command.background = parse_background(raw.background);
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
@@ -201,6 +210,11 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_flag("--orthographic", command.orthographic, "Parallel rays");
     app.add_option("--orbit", raw.orbit, "N pictures around the model: OUT-000.png and so on")->option_text("N");
     app.add_option("--view", raw.view, view_help())->option_text("VIEW");
+    app.add_option(
+           "--backend", raw.backend,
+           "What draws surfels: sprite (point sprites, default), tile (compute shaders) or auto (tile on software "
+           "devices, else sprite). Sprites draw what tiles cannot; --stats tells")
+        ->option_text("auto|sprite|tile");
     app.add_option("--background", raw.background, "#rrggbb, a name (white, black, grey, sky ...) or transparent")
         ->option_text("COLOUR");
     app.add_flag("--two-sided", raw.two_sided, "Show surfaces from behind, too");

@@ -22,6 +22,7 @@ struct CaptureCommand {
     bool orthographic = false;
     std::uint32_t orbit = 0;  // frames, 0: a single picture
     std::optional<View> view;
+    std::optional<Backend> backend;
     std::optional<Background> background;
     std::optional<Sides> sides;
     std::optional<double> epsilon_scale;

@@ -97,14 +97,19 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
     passes.data.update(frame, scene.lighting);
 
     reserve_pixels(kTexelBytes * settings.width * settings.height);
-    graph.clear();
-    const graph::BufferHandle destination =
-        graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
-    const graph::ImageHandle picture = add_frame(graph, passes, frame, scene.background, draws);
-    add_read_back(graph, picture, destination, settings.width, settings.height);
-    graph::Bindings bindings;
-    bindings.bind(destination, pixels);
-    device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
+    Backend backend = Backend::kAuto;
+    do {
+        backend = choose_backend(settings.backend, device, passes, frame, draws);
+        if (backend == Backend::kTile) passes.tile.prepare(frame, draws);
+        graph.clear();
+        graph::Bindings bindings;
+        const graph::BufferHandle destination =
+            graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
+        const graph::ImageHandle picture = add_frame(graph, bindings, passes, backend, frame, scene.background, draws);
+        add_read_back(graph, picture, destination, settings.width, settings.height);
+        bindings.bind(destination, pixels);
+        device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
+    } while (backend == Backend::kTile && !passes.tile.complete());
 
     const std::span<const std::byte> mapped = pixels.mapped();
     std::vector<std::byte> bytes(mapped.begin(), mapped.begin() + static_cast<std::ptrdiff_t>(pixels.size()));
@@ -113,6 +118,7 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
         stats->frame_ms = elapsed.count();
         for (const graph::PassTiming& timing : executor.timings())
             stats->passes.push_back({timing.name, timing.gpu_ms});
+        stats->backend = backend;
         stats->surfels_drawn = draws.surfels;
         stats->triangles_drawn = draws.triangles;
     }

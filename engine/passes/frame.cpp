@@ -17,14 +17,21 @@ FramePasses::FramePasses(gpu::Device& device)
       triangle(device, data),
       surfel_visibility(device, data),
       surfel_attribute(device, data),
+      tile(device, data),
       surfel_normalise(device, data) {}
 
 VkFormat picture_format(View view) {
     return is_numeric(view) ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
 }
 
-graph::ImageHandle add_frame(graph::Graph& graph, FramePasses& passes, const FrameSettings& settings,
-                             const Background& background, const DrawList& draws) {
+Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
+                       const FrameSettings& settings, const DrawList& draws) {
+    const bool tiles = wanted == Backend::kTile || (wanted == Backend::kAuto && device.info().is_cpu());
+    return tiles && passes.tile.can_draw(settings, draws) ? Backend::kTile : Backend::kSprite;
+}
+
+graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes, Backend backend,
+                             const FrameSettings& settings, const Background& background, const DrawList& draws) {
     const auto image = [&](const char* name, VkFormat format) {
         return graph.create_image(name, {.format = format, .width = settings.width, .height = settings.height});
     };
@@ -38,9 +45,14 @@ graph::ImageHandle add_frame(graph::Graph& graph, FramePasses& passes, const Fra
     };
 
     passes.triangle.add(graph, targets, settings, draws);
-    passes.surfel_visibility.add(graph, targets, settings, draws);
-    passes.surfel_attribute.add(graph, targets, settings, draws);
-    passes.surfel_normalise.add(graph, targets, settings, background);
+    if (backend == Backend::kTile) {
+        passes.tile.add(graph, bindings, targets, settings, draws);
+        passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kWeight);
+    } else {
+        passes.surfel_visibility.add(graph, targets, settings, draws);
+        passes.surfel_attribute.add(graph, targets, settings, draws);
+        passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kStencil);
+    }
     return targets.picture;
 }
 

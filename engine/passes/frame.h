@@ -5,8 +5,11 @@
 #include "engine/passes/surfel_attribute_pass.h"
 #include "engine/passes/surfel_normalise_pass.h"
 #include "engine/passes/surfel_visibility_pass.h"
+#include "engine/passes/tile_passes.h"
 #include "engine/passes/triangle_pass.h"
+#include "engine/render_graph/executor/executor.h"
 #include "engine/render_graph/graph.h"
+#include "engine/scene/backend.h"
 #include "engine/scene/draw_list.h"
 #include "engine/vulkan/device.h"
 
@@ -28,16 +31,22 @@ struct FramePasses {
     TrianglePass triangle;
     SurfelVisibilityPass surfel_visibility;
     SurfelAttributePass surfel_attribute;
+    TilePasses tile;
     SurfelNormalisePass surfel_normalise;
 };
+
+/// What draws a frame: what was asked for where it can, else sprites; kAuto: tiles on software devices. Never kAuto.
+Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
+                       const FrameSettings& settings, const DrawList& draws);
 
 /// Format of the picture: 8-bit RGBA, sRGB-encoded by the shader, alpha coverage; or float for numeric views, where
 /// uncovered pixels keep +infinity.
 VkFormat picture_format(View view);
 
 /// Adds the passes of one frame to the graph, in order, and returns the picture. `draws`, `settings` and `passes` must
-/// live until the graph has been executed; passes.data must have been updated with the same settings.
-graph::ImageHandle add_frame(graph::Graph& graph, FramePasses& passes, const FrameSettings& settings,
-                             const Background& background, const DrawList& draws);
+/// live until the graph has been executed; passes.data must have been updated with the same settings, and passes.tile
+/// prepared if it is the `backend`. Binds what the passes keep from frame to frame.
+graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes, Backend backend,
+                             const FrameSettings& settings, const Background& background, const DrawList& draws);
 
 }  // namespace splice

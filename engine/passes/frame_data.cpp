@@ -31,7 +31,8 @@ bool is_numeric(View view) {
 }
 
 gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device) {
-    const VkShaderStageFlags stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    const VkShaderStageFlags stages =
+        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
     return {device,
             {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, stages, 1}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, stages, 1}}};
 }

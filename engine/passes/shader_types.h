@@ -40,7 +40,20 @@ struct InstanceConstants {
     float epsilon_scale;
     std::uint32_t flags;
     std::uint32_t first_patch;
+    std::uint32_t first_surfel;
+    std::uint32_t surfel_count;
+    std::uint32_t first_splat;
+    std::uint32_t padding;
 };
-static_assert(sizeof(InstanceConstants) == 64);
+static_assert(sizeof(InstanceConstants) == 80);
+
+struct TileUniforms {
+    std::uint32_t tiles_x;
+    std::uint32_t tiles_y;
+    std::uint32_t splats;
+    std::uint32_t chunks;
+    std::uint32_t capacity;
+};
+static_assert(sizeof(TileUniforms) == 20);
 
 }  // namespace splice

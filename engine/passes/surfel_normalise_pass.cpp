@@ -34,7 +34,7 @@ SurfelNormalisePass::SurfelNormalisePass(gpu::Device& device, const FrameData& d
       pool_(device) {}
 
 void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
-                              const Background& background) {
+                              const Background& background, SurfelOwnership ownership) {
     graph::Pass pass = graph.add_pass("surfel_normalise", graph::PassKind::graphics);
     pass.input_attachment(targets.triangle_colour);
     pass.input_attachment(targets.accumulation);
@@ -42,16 +42,19 @@ void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const 
     pass.depth_stencil_read(targets.depth);
     targets.picture =
         pass.colour_attachment(targets.picture, graph::Contents::clear(empty_picture(settings.view, background)));
-    pass.record([this, targets, &settings](const graph::PassContext& context) { draw(context, targets, settings); });
+    pass.record([this, targets, &settings, ownership](const graph::PassContext& context) {
+        draw(context, targets, settings, ownership);
+    });
 }
 
 void SurfelNormalisePass::draw(const graph::PassContext& context, const FrameTargets& targets,
-                               const FrameSettings& settings) {
+                               const FrameSettings& settings, SurfelOwnership ownership) {
     const std::array sets{data_.set(), input_set(context, targets)};
     for (const std::uint32_t owner : {kTriangleStencil, kSurfelStencil}) {
+        if (ownership == SurfelOwnership::kWeight && owner == kTriangleStencil) continue;
         vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                          pipelines_[{frame_variant(settings), owner}].get(
-                              device_, context, [&] { return pipeline_options(settings, owner); }));
+                          pipelines_[{frame_variant(settings), ownership, owner}].get(
+                              device_, context, [&] { return pipeline_options(settings, ownership, owner); }));
         vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0,
                                 static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
         vkCmdDraw(context.commands, 3, 1, 0, 0);
@@ -71,6 +74,7 @@ VkDescriptorSet SurfelNormalisePass::input_set(const graph::PassContext& context
 }
 
 gpu::GraphicsPipelineOptions SurfelNormalisePass::pipeline_options(const FrameSettings& settings,
+                                                                   SurfelOwnership ownership,
                                                                    std::uint32_t owner) const {
     gpu::GraphicsPipelineOptions options;
     options.name = "surfel_normalise";
@@ -78,7 +82,8 @@ gpu::GraphicsPipelineOptions SurfelNormalisePass::pipeline_options(const FrameSe
     options.fragment = {&fragment_, frame_constants(settings)};
     options.fragment.constants[0] = owner == kSurfelStencil ? 1u : 0u;
     options.layout = layout_.handle();
-    options.stencil_test = true;
+    options.fragment.constants[3] = ownership == SurfelOwnership::kWeight ? 1u : 0u;
+    options.stencil_test = ownership == SurfelOwnership::kStencil;
     options.stencil_front = owned_by(owner);
     options.stencil_back = options.stencil_front;
     options.blends = {gpu::Blend::replace()};

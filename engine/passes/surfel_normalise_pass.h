@@ -8,23 +8,30 @@
 
 #include <cstdint>
 #include <map>
-#include <utility>
+#include <tuple>
 
 namespace splice {
+
+/// What says that surfels own a pixel: the stencil value of the visibility pass, or, where no such pass was, that there
+/// is a weight.
+enum class SurfelOwnership : std::uint32_t { kStencil, kWeight };
 
 class SurfelNormalisePass {
   public:
     SurfelNormalisePass(gpu::Device& device, const FrameData& data);
-    void add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const Background& background);
+    void add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const Background& background,
+             SurfelOwnership ownership);
 
   private:
     struct Inputs {
         std::uint64_t plan_id = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
     };
-    void draw(const graph::PassContext& context, const FrameTargets& targets, const FrameSettings& settings);
+    void draw(const graph::PassContext& context, const FrameTargets& targets, const FrameSettings& settings,
+              SurfelOwnership ownership);
     VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets);
-    gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, std::uint32_t owner) const;
+    gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, SurfelOwnership ownership,
+                                                  std::uint32_t owner) const;
 
     const gpu::Device& device_;
     const FrameData& data_;
@@ -33,7 +40,7 @@ class SurfelNormalisePass {
     gpu::ShaderModule vertex_, fragment_;
     gpu::DescriptorPool pool_;
     Inputs inputs_;
-    std::map<std::pair<FrameVariant, std::uint32_t>, graph::PassPipelines> pipelines_;  // by owner
+    std::map<std::tuple<FrameVariant, SurfelOwnership, std::uint32_t>, graph::PassPipelines> pipelines_;  // by owner
 };
 
 }  // namespace splice

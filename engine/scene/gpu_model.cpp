@@ -51,6 +51,10 @@ gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device) {
     return {device, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT, 1}}};
 }
 
+gpu::DescriptorSetLayout surfel_set_layout(const gpu::Device& device) {
+    return {device, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT, 1}}};
+}
+
 GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     : info_(*model.info),
       patches_(model.patches.begin(), model.patches.end()),
@@ -65,11 +69,23 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     };
     vertices_ = buffer("vertices", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.vertices));
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
-    // A vertex buffer, because a storage binding is limited to 128 MiB on lavapipe. The padding is for synchronisation
+    // The padding is for synchronisation
     // validation (1.3.239), which takes the four vertices of an instance for four records of the instance's buffer.
-    surfels_ =
-        buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.surfels), 3 * sizeof(format::Surfel));
+    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                      std::as_bytes(model.surfels), 3 * sizeof(format::Surfel));
+    create_surfel_chunks(device);
     create_materials(device, model);
+}
+
+void GpuModel::create_surfel_chunks(gpu::Device& device) {
+    surfel_layout_ = surfel_set_layout(device);
+    const std::uint64_t surfels = surfels_.size() / sizeof(format::Surfel);
+    for (const gpu::StorageChunk& chunk : gpu::storage_chunks(device.limits(), surfels, sizeof(format::Surfel))) {
+        surfel_chunks_.push_back({pool_.allocate(surfel_layout_), chunk.first_element, chunk.elements});
+        gpu::DescriptorWriter(surfel_chunks_.back().set)
+            .storage_buffer(0, surfels_.handle(), chunk.offset, chunk.size)
+            .write(device);
+    }
 }
 
 void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {

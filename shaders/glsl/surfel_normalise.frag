@@ -6,6 +6,7 @@
 #include "colour.glsl"
 
 layout(constant_id = 0) const bool SURFELS = false;
+layout(constant_id = 3) const bool BY_WEIGHT = false;  // drawn once: surfels own the pixel where there is a weight
 
 layout(input_attachment_index = 0, set = 1, binding = 0) uniform subpassInput triangle_colour;
 layout(input_attachment_index = 1, set = 1, binding = 1) uniform subpassInput accumulation;
@@ -18,22 +19,23 @@ layout(location = 0) out vec4 out_colour;
 void main() {
     const vec4 triangles = subpassLoad(triangle_colour);
     const vec4 sum = subpassLoad(accumulation);
-    if (!SURFELS && triangles.a == 0) discard;
+    const bool surfels = BY_WEIGHT ? sum.a > 0 : SURFELS;
+    if (!surfels && triangles.a == 0) discard;
     if (VIEW == VIEW_VISIBILITY) {
         const float eye_depth = decode_depth(subpassLoad(depth).r);
-        out_colour = vec4(SURFELS ? -eye_depth : eye_depth, 0, 0, 1);
+        out_colour = vec4(surfels ? -eye_depth : eye_depth, 0, 0, 1);
         return;
     }
     if (VIEW == VIEW_OVERLAP) {
-        out_colour = vec4(SURFELS ? sum.a : 0, 0, 0, 1);
+        out_colour = vec4(surfels ? sum.a : 0, 0, 0, 1);
         return;
     }
-    const vec3 linear = SURFELS ? sum.rgb / sum.a : triangles.rgb;
+    const vec3 linear = surfels ? sum.rgb / sum.a : triangles.rgb;
     if (VIEW == VIEW_DEPTH || VIEW == VIEW_NORMALS) {
         out_colour = vec4(linear, 1);
     } else if (VIEW == VIEW_ACCUMULATION) {
         // Half scale: two fully weighted splats reach white's level.
-        out_colour = vec4(encode_srgb(SURFELS ? 0.5 * sum.rgb : vec3(0)), 1);
+        out_colour = vec4(encode_srgb(surfels ? 0.5 * sum.rgb : vec3(0)), 1);
     } else {
         out_colour = vec4(encode_srgb(linear), 1);
     }

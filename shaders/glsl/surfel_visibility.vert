@@ -1,9 +1,13 @@
 // Visibility pass: the depth of every surfel, moved back by epsilon (thesis 3.4.2).
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "frame.glsl"
 #include "octahedral.glsl"
+#include "colour.glsl"
+#include "lighting.glsl"
 #include "splat.glsl"
+#include "surfel_frame.glsl"
 #include "surfel_vertex.glsl"
 
 layout(location = 0) flat out vec4 out_anchor_g;
@@ -15,7 +19,7 @@ layout(location = 4) flat out vec2 out_swell;
 void main() {
     Splat splat;
     SurfelFrame surfel;
-    const bool drawn = surfel_splat(splat, surfel);
+    const bool drawn = surfel_splat(vertex_record(), splat, surfel);
     place_primitive(drawn, splat.anchor, splat.disk_bounds);
     out_anchor_g = vec4(splat.anchor, splat.g);
     out_plane_map = splat.plane_map;

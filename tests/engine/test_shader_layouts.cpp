@@ -1,6 +1,7 @@
 // The structures that C++ and GLSL share are declared twice; here the compiled shaders are reflected and compared with
 // the C++ side, member by member.
 #include "engine/passes/shader_types.h"
+#include "engine/passes/tile_buffers.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
 #include "preprocess/model_format/surfel_extent.h"
@@ -9,6 +10,9 @@
 #include "shaders/surfel_normalise_frag.h"
 #include "shaders/surfel_visibility_frag.h"
 #include "shaders/surfel_visibility_vert.h"
+#include "shaders/tile_count_comp.h"
+#include "shaders/tile_gather_comp.h"
+#include "shaders/tile_setup_comp.h"
 #include "shaders/triangle_frag.h"
 #include "shaders/triangle_vert.h"
 #include "tests/support/test_files.h"
@@ -46,8 +50,9 @@ class Reflection {
     Reflection(const Reflection&) = delete;
     Reflection& operator=(const Reflection&) = delete;
 
-    /// The blocks of this kind. `inside`: of the elements of the runtime array that is their only member.
-    std::vector<Layout> blocks(spvc_resource_type kind, bool inside = false) const {
+    /// The blocks of this kind in the descriptor set. `inside`: of the elements of the runtime array that is their only
+    /// member.
+    std::vector<Layout> blocks(spvc_resource_type kind, bool inside = false, unsigned set = 0) const {
         spvc_resources resources = nullptr;
         REQUIRE(spvc_compiler_create_shader_resources(compiler_, &resources) == SPVC_SUCCESS);
         const spvc_reflected_resource* list = nullptr;
@@ -55,6 +60,9 @@ class Reflection {
         REQUIRE(spvc_resources_get_resource_list_for_type(resources, kind, &list, &count) == SPVC_SUCCESS);
         std::vector<Layout> layouts;
         for (std::size_t i = 0; i < count; ++i) {
+            if (kind != SPVC_RESOURCE_TYPE_PUSH_CONSTANT &&
+                spvc_compiler_get_decoration(compiler_, list[i].id, SpvDecorationDescriptorSet) != set)
+                continue;
             spvc_type_id id = list[i].base_type_id;
             if (inside) {
                 const spvc_type outer = spvc_compiler_get_type_handle(compiler_, id);
@@ -89,16 +97,18 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"surfel_visibility.vert", surfel_visibility_vert},
             {"surfel_visibility.frag", surfel_visibility_frag},
             {"surfel_normalise.frag", surfel_normalise_frag},
+            {"tile_setup.comp", tile_setup_comp},
+            {"tile_gather.comp", tile_gather_comp},
             {"triangle.vert", triangle_vert},
             {"triangle.frag", triangle_frag}};
 }
 
 // Every block of the kind in every shader; at least one shader must have it.
-void expect_everywhere(spvc_resource_type kind, bool inside, const Layout& expected) {
+void expect_everywhere(spvc_resource_type kind, bool inside, const Layout& expected, unsigned set = 0) {
     int found = 0;
     for (const auto& [name, words] : shaders()) {
         CAPTURE(name);
-        for (const Layout& layout : Reflection(words).blocks(kind, inside)) {
+        for (const Layout& layout : Reflection(words).blocks(kind, inside, set)) {
             ++found;
             CHECK(layout.size == expected.size);
             CHECK(layout.offsets == expected.offsets);
@@ -131,7 +141,17 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
                       {sizeof(InstanceConstants),
                        {MEMBER(InstanceConstants, model_to_view), MEMBER(InstanceConstants, scale),
                         MEMBER(InstanceConstants, epsilon_scale), MEMBER(InstanceConstants, flags),
-                        MEMBER(InstanceConstants, first_patch)}});
+                        MEMBER(InstanceConstants, first_patch), MEMBER(InstanceConstants, first_surfel),
+                        MEMBER(InstanceConstants, surfel_count), MEMBER(InstanceConstants, first_splat),
+                        MEMBER(InstanceConstants, padding)}});
+}
+
+TEST_CASE("tile uniforms have the layout that the shaders declare") {
+    expect_everywhere(SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, false,
+                      {sizeof(TileUniforms),
+                       {MEMBER(TileUniforms, tiles_x), MEMBER(TileUniforms, tiles_y), MEMBER(TileUniforms, splats),
+                        MEMBER(TileUniforms, chunks), MEMBER(TileUniforms, capacity)}},
+                      2);
 }
 
 TEST_CASE("constants that C++ and GLSL share have the same values") {
@@ -141,17 +161,22 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
         std::smatch match;
         CAPTURE(file, name);
         REQUIRE(std::regex_search(text, match,
-                                  std::regex(name + R"( = (?:vec[23]\()?)" +
-                                             (component == 0 ? "" : "[0-9.]+, [0-9.]+, ") + R"((-?[0-9.]+))")));
+                                  std::regex(name + R"( = (?:u?vec[23]\()?)" +
+                                             (component == 0   ? ""
+                                              : component == 1 ? "[0-9.]+, "
+                                                               : "[0-9.]+, [0-9.]+, ") +
+                                             R"((-?[0-9.]+))")));
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_POWERS")) == kSwellStep);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_ONES")) == kSwellOne);
-    CHECK(static_cast<float>(constant("include/surfel_vertex.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
-    const double lean = constant("surfel_attribute.vert", "LARGEST_LEAN");
-    const double turn = constant("surfel_attribute.vert", "LARGEST_TURN");
+    CHECK(constant("include/tile.glsl", "TILE") == kTileWidth);
+    CHECK(constant("include/tile.glsl", "TILE", 1) == kTileHeight);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS")) == kSwellStep);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    const double lean = constant("include/surfel_frame.glsl", "LARGEST_LEAN");
+    const double turn = constant("include/surfel_frame.glsl", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));
     CHECK(bend == std::vector<double>{lean, lean, turn, turn, turn});
 }

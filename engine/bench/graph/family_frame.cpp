@@ -22,7 +22,8 @@ void declare_view(graph::Graph& graph, FramePasses& passes, const FrameSettings&
                   const DrawList& draws) {
     const graph::BufferHandle pixels = graph.import_buffer("pixels", {kTexelBytes * settings.width * settings.height},
                                                            {.after = graph::external::host_read()});
-    const graph::ImageHandle picture = add_frame(graph, passes, settings, background, draws);
+    graph::Bindings kept;  // sprites keep nothing from frame to frame
+    const graph::ImageHandle picture = add_frame(graph, kept, passes, Backend::kSprite, settings, background, draws);
     add_read_back(graph, picture, pixels, settings.width, settings.height);
 }
 

@@ -50,6 +50,10 @@ layout(push_constant, std430) uniform InstanceConstants {
     float epsilon_scale;    // the user's
     uint flags;             // INSTANCE_*
     uint first_patch;       // added to patch numbers, so that instances get different colours
+    uint first_surfel;      // compute: of the bound surfels
+    uint surfel_count;
+    uint first_splat;       // compute: where the first of them is recorded
+    uint padding;
 } instance;
 
 vec3 to_view_space(vec3 position) {

@@ -3,21 +3,33 @@
 #ifndef SPLICE_LIGHTING_GLSL
 #define SPLICE_LIGHTING_GLSL
 
-// Linear colours, view space; `normal` is unit and already on the side to be lit.
+// What one light adds to a point; `normal` is unit and already on the side to be lit.
+struct Light {
+    vec3 diffuse, highlight;
+};
+
+Light light_at(LightRecord light, vec3 normal, vec3 position) {
+    const vec3 offset = light.vector.xyz - position * light.vector.w;
+    const vec3 to_light = normalize(offset);
+    const vec3 strength = light.colour.rgb / (1 + light.colour.a * dot(offset, offset));
+    const float cosine = dot(normal, to_light);
+    if (cosine <= 0) return Light(vec3(0), vec3(0));
+    vec3 highlight = vec3(0);
+    if (frame.specular > 0) {
+        const vec3 to_eye = normalize(towards_eye(position));
+        highlight = strength * pow(max(dot(normal, normalize(to_light + to_eye)), 0), frame.shininess);
+    }
+    return Light(strength * cosine, highlight);
+}
+
+// Linear colours, view space.
 vec3 shade(vec3 albedo, vec3 normal, vec3 position) {
-    const vec3 to_eye = normalize(towards_eye(position));
     vec3 diffuse = frame.ambient;
     vec3 highlight = vec3(0);
     for (uint i = 0; i < frame.light_count; ++i) {
-        const LightRecord light = lights[i];
-        const vec3 offset = light.vector.xyz - position * light.vector.w;
-        const vec3 to_light = normalize(offset);
-        const vec3 strength = light.colour.rgb / (1 + light.colour.a * dot(offset, offset));
-        const float cosine = dot(normal, to_light);
-        if (cosine <= 0) continue;
-        diffuse += strength * cosine;
-        if (frame.specular > 0)
-            highlight += strength * pow(max(dot(normal, normalize(to_light + to_eye)), 0), frame.shininess);
+        const Light light = light_at(lights[i], normal, position);
+        diffuse += light.diffuse;
+        highlight += light.highlight;
     }
     return albedo * diffuse + frame.specular * highlight;
 }
@@ -29,17 +41,20 @@ vec3 face_the_eye(vec3 normal, vec3 position) {
     return turned ? -normal : normal;
 }
 
-// What the views show instead of `albedo`; `patch_number` and `is_surfel` say where the point belongs.
-vec3 view_colour(vec3 albedo, vec3 normal, vec3 position, uint patch_number, bool is_surfel) {
+// What the views light instead of `albedo`; `patch_number` and `is_surfel` say where the point belongs.
+vec3 view_albedo(vec3 albedo, uint patch_number, bool is_surfel) {
     switch (VIEW) {
-        case VIEW_NORMALS: return normal * 0.5 + 0.5;
-        case VIEW_PATCHES: return shade(label_colour(patch_number + instance.first_patch), normal, position);
-        case VIEW_REPRESENTATION:
-            return shade(is_surfel ? vec3(0.85, 0.32, 0.06) : vec3(0.10, 0.30, 0.75), normal, position);
-        case VIEW_SAMPLES: return shade(vec3(0.85, 0.32, 0.06), normal, position);
-        case VIEW_WIREFRAME: return shade(is_surfel ? vec3(0.75, 0.60, 0.45) : vec3(0.85), normal, position);
-        default: return shade(albedo, normal, position);
+        case VIEW_PATCHES: return label_colour(patch_number + instance.first_patch);
+        case VIEW_REPRESENTATION: return is_surfel ? vec3(0.85, 0.32, 0.06) : vec3(0.10, 0.30, 0.75);
+        case VIEW_SAMPLES: return vec3(0.85, 0.32, 0.06);
+        case VIEW_WIREFRAME: return is_surfel ? vec3(0.75, 0.60, 0.45) : vec3(0.85);
+        default: return albedo;
     }
+}
+
+vec3 view_colour(vec3 albedo, vec3 normal, vec3 position, uint patch_number, bool is_surfel) {
+    if (VIEW == VIEW_NORMALS) return normal * 0.5 + 0.5;
+    return shade(view_albedo(albedo, patch_number, is_surfel), normal, position);
 }
 
 #endif

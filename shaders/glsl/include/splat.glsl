@@ -56,6 +56,7 @@ const float MIN_WEIGHT = 1.0 / 4096.0;
 // Variance of the prefilter, pixels^2. The thesis's 1 (3.22) blurs more than a pixel's box (variance 1/12) does: 0.3 is
 // the least that lets every splat reach a pixel centre, its footprint ending at sqrt(2 * 0.3) > sqrt(2) / 2 pixels.
 const float PREFILTER = 0.3;
+const float PREFILTER_REACH = 2;  // pixels by which a splat or a speck's pixel exceeds the disk, and some
 const float NOWHERE = 1e18;
 
 // preprocess/model_format/tangent_frame.h computes the same.

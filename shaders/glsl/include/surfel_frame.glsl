@@ -1,0 +1,114 @@
+// From a surfel of the model file to its splat on screen and its lit colour: shared by every backend. Needs frame.glsl,
+// octahedral.glsl, colour.glsl, lighting.glsl, splat.glsl.
+#ifndef SPLICE_SURFEL_FRAME_GLSL
+#define SPLICE_SURFEL_FRAME_GLSL
+
+// format::Surfel, decoded.
+struct SurfelRecord {
+    vec3 position;
+    float radius;
+    vec2 normal;  // octahedral
+    vec3 colour;  // sRGB-encoded
+    float bend_0;  // format::Surfel::shading_bend, 1 for the largest
+    vec4 bend_1_4;
+    uint patch_number;
+    uint extent;  // preprocess/model_format/surfel_extent.h
+};
+
+// The same surfels whatever else is drawn with them.
+bool in_sample(vec3 position) {
+    uint h = floatBitsToUint(position.x) * 0x9e3779b9u;
+    h = (h ^ floatBitsToUint(position.y) ^ (h >> 15)) * 0x9e3779b9u;
+    h = (h ^ floatBitsToUint(position.z) ^ (h >> 15)) * 0x9e3779b9u;
+    h ^= h >> 16;
+    h *= 0x85ebca6bu;
+    h ^= h >> 13;
+    return float(h >> 8) < frame.sample_share * 16777216.0;
+}
+
+struct SurfelFrame {
+    vec3 centre, normal, s, t;  // view space; s and t as format::Surfel::shading_bend means them
+    float radius;               // world units
+};
+
+// kSwellStep, kSwellStep, kEpsilonStep; kSwellOne, kSwellOne, kEpsilonOne
+const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
+const vec3 EXTENT_ONES = vec3(31, 31, 24);
+
+// The splat of a surfel; false if it is not to be drawn.
+bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) {
+    const vec3 centre = surfel.centre = to_view_space(record.position);
+    const vec3 model_normal = decode_octahedral(record.normal);
+    const vec3 normal = surfel.normal = normal_to_view_space(model_normal);
+    tangents_of(model_normal, surfel.s, surfel.t);
+    surfel.s = normal_to_view_space(surfel.s);
+    surfel.t = normal_to_view_space(surfel.t);
+    const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
+    if (!two_sided && beyond_horizon(normal, centre)) return false;
+    const float baked_radius = record.radius * instance.scale;
+    float radius = baked_radius;
+    if (VIEW == VIEW_SAMPLES) {
+        if (!in_sample(record.position)) return false;
+        radius *= frame.sample_radius;
+    }
+    surfel.radius = radius;
+    const uvec3 steps = uvec3(record.extent & 31, record.extent >> 5 & 31, record.extent >> 10);
+    const vec3 shares = mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
+    return make_splat(centre, normal, surfel.s, surfel.t, radius, VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      shares.z * baked_radius * instance.epsilon_scale, splat);
+}
+
+// format::kLargestBend
+const vec2 LARGEST_LEAN = vec2(1);
+const vec3 LARGEST_TURN = vec3(0.5);
+
+// Lit once a surfel, to first order: the colour at the centre and how it changes along both tangents, a radius, as the
+// shading normal turns.
+struct SurfelColour {
+    vec3 centre, along_u, along_v;
+};
+
+// The centre, and both ends of both diameters.
+const int LIT_POINTS = 5;
+const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0, 1), vec2(0, -1));
+
+// `side`: 1, or -1 where a two-sided surface is seen from behind. `uv`: on the disk, in radii.
+vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
+    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
+    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
+    return side * normalize(surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t);
+}
+
+// All points under one light before the next light: reading a light costs more than using it.
+SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
+    const float side = dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1;
+    vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
+    [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
+        normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);
+        positions[p] = surfel.centre + surfel.radius * (LIT_AT[p].x * surfel.s + LIT_AT[p].y * surfel.t);
+        diffuse[p] = frame.ambient;
+        highlights[p] = vec3(0);
+    }
+    if (VIEW != VIEW_NORMALS) {
+        for (uint i = 0; i < frame.light_count; ++i) {
+            const LightRecord record = lights[i];
+            [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
+                const Light light = light_at(record, normals[p], positions[p]);
+                diffuse[p] += light.diffuse;
+                highlights[p] += light.highlight;
+            }
+        }
+    }
+    const vec3 albedo = view_albedo(decode_srgb(record.colour), record.patch_number, true);
+    [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
+        lit[p] = VIEW == VIEW_NORMALS ? normals[p] * 0.5 + 0.5 : albedo * diffuse[p] + frame.specular * highlights[p];
+    }
+    SurfelColour colour;
+    colour.centre = lit[0];
+    colour.along_u = 0.5 * (lit[1] - lit[2]);
+    colour.along_v = 0.5 * (lit[3] - lit[4]);
+    return colour;
+}
+
+#endif

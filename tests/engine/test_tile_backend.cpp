@@ -1,0 +1,273 @@
+// The tile backend against the sprites: the same pictures to a stated tolerance, the same bytes every time.
+#include "engine/capture/capture.h"
+#include "preprocess/build_model/build_model.h"
+#include "preprocess/mesh/read_mesh.h"
+#include "preprocess/mesh/shapes.h"
+#include "tests/engine/handmade_model.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+using namespace splice;
+using namespace splice::test;
+
+namespace {
+
+// Both backends compute the same splats; single precision decides otherwise at few pixels only, where a ray meets a
+// disk's very edge or two depths are equal. Share of the pixels that may differ by more than a step of 8 bits; all the
+// others are at least this near.
+constexpr int kSteps = 1;
+constexpr double kOddShare = 4e-4;
+constexpr double kLeastPsnr = 60;
+
+struct TileCase {
+    const char* name;
+    std::function<void(HandmadeModel&)> fill;
+    Camera camera;
+    bool two_sided = false;
+    std::uint32_t width = 203, height = 150;  // pixels; no multiples of a tile
+};
+
+Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double near_plane = 0.01) {
+    Camera camera;
+    camera.eye = eye;
+    camera.target = target;
+    camera.fov_y_degrees = 60;
+    camera.near_plane = near_plane;
+    camera.far_plane = 100;
+    return camera;
+}
+
+Camera parallel(Camera camera, double height) {
+    camera.orthographic = true;
+    camera.orthographic_height = height;
+    return camera;
+}
+
+std::vector<Disk> thick(std::vector<Disk> disks) {
+    for (Disk& disk : disks) {
+        disk.above = 0.15f * disk.radius;
+        disk.below = 0.1f * disk.radius;
+    }
+    return disks;
+}
+
+// Disks of sizes over four decades, turned everywhere.
+std::vector<Disk> scattered(int count, float smallest, float largest, float spread) {
+    std::vector<Disk> disks;
+    std::uint32_t state = 7;
+    const auto random = [&] {
+        state = state * 1664525u + 1013904223u;
+        return static_cast<float>(state >> 8) / 16777216.0f;
+    };
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 centre =
+            spread * (glm::vec3(random(), random(), random()) * 2.0f - 1.0f) - glm::vec3(0, 0, 2 + spread);
+        const glm::vec3 normal = glm::vec3(random(), random(), random()) * 2.0f - 1.0f + glm::vec3(0, 0, 0.3f);
+        const float radius = smallest * std::pow(largest / smallest, random());
+        disks.push_back({centre, normal, radius, 0.3f * radius, 0xff000000u | state >> 8, 0.2f * radius * random(),
+                         0.1f * radius * random()});
+    }
+    return disks;
+}
+
+std::vector<TileCase> tile_cases() {
+    const Camera eye = camera_at({0, 0, 0}, {0, 0, -1});
+    const auto wall = [](float z, int count, std::uint32_t colour) {
+        return sheet({-1, -0.8f, z}, {2, 0, 0}, {0, 1.6f, 0}, count, colour);
+    };
+    return {
+        {"a sheet before another, edges inside the picture",
+         [&](HandmadeModel& m) {
+             m.add_surfels(wall(-3, 30, kBlue))
+                 .add_surfels(sheet({-0.4f, -0.3f, -2}, {0.8f, 0.1f, 0}, {0, 0.6f, 0}, 12, kRed));
+         },
+         eye},
+        {"two sheets two epsilon apart",
+         [&](HandmadeModel& m) { m.add_surfels(wall(-2, 20, kRed)).add_surfels(wall(-2.2f, 20, kGreen)); }, eye},
+        {"grazing sheets",
+         [&](HandmadeModel& m) {
+             m.add_surfels(thick(sheet({-1, -0.1f, -4}, {2, 0, 0}, {0, 0.02f, 3.5f}, 40, kRed)))
+                 .add_surfels(sheet({-1, 0.1f, -1}, {2, 0, 0}, {0, 0, -3}, 30, kGreen));
+         },
+         eye, true},
+        {"across the near plane",
+         [&](HandmadeModel& m) {
+             m.add_surfels(sheet({-1, -0.3f, 0.3f}, {2, 0, 0}, {0, 0.1f, -2}, 15, kRed))
+                 .add_surfels({{{0, -0.4f, 0}, {0, 1, 0}, 5, 0.01f, kBlue}});
+         },
+         camera_at({0, 0, 0}, {0, 0, -1}, 0.1), true},
+        {"centres off the screen, disks of 2,000 pixels",
+         [&](HandmadeModel& m) {
+             m.add_surfels({{{6, 0, -2}, {0.2f, 0, 1}, 6.5f, 0.01f, kRed},
+                            {{-9, 3, -3}, {-0.1f, 0.1f, 1}, 9, 0.01f, kGreen},
+                            {{0, 0, -4}, {0, 0.2f, 1}, 30, 0.01f, kBlue}});
+         },
+         eye, true},
+        {"disks of a tenth of a pixel",
+         [&](HandmadeModel& m) { m.add_surfels(wall(-40, 60, kRed)).add_surfels(scattered(2000, 4e-4f, 1e-2f, 1)); },
+         eye, true},
+        {"disks of all sizes", [&](HandmadeModel& m) { m.add_surfels(scattered(3000, 1e-3f, 1, 2)); }, eye, true},
+        {"disks of all sizes, parallel rays", [&](HandmadeModel& m) { m.add_surfels(scattered(3000, 1e-3f, 1, 2)); },
+         parallel(eye, 3), true},
+        {"triangles before, behind and in the plane of surfels",
+         [&](HandmadeModel& m) {
+             m.add_surfels(wall(-2, 25, kRed))
+                 .add_triangles(quad({-0.9f, -0.5f, -1.9f}, {0.5f, 0, 0}, {0, 0.9f, 0}, kGreen))
+                 .add_triangles(quad({-0.2f, -0.5f, -2}, {0.5f, 0, 0}, {0, 0.9f, 0}, kGreen))
+                 .add_triangles(quad({-3, -3, -2.6f}, {6, 0, 0}, {0, 6, 0}, kBlue))
+                 .add_triangles(quad({0.3f, -0.6f, -2.3f}, {0.6f, 0, 0.6f}, {0, 1.2f, 0}, kGreen));
+         },
+         eye},
+        {"nothing but triangles",
+         [&](HandmadeModel& m) {
+             m.add_triangles(quad({-1, -1, -3}, {2, 0, 0}, {0, 2, 0}, kRed));
+         },
+         eye},
+    };
+}
+
+struct Difference {
+    int largest = 0;
+    double odd_share = 0, psnr = 0;  // psnr: without the odd ones
+};
+
+Difference difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    REQUIRE(a.size() == b.size());
+    Difference result;
+    double squares = 0;
+    std::size_t odd = 0;
+    for (std::size_t pixel = 0; pixel < a.size(); pixel += 4) {
+        int worst = 0;
+        double pixel_squares = 0;
+        for (std::size_t i = pixel; i < pixel + 4; ++i) {
+            const int off = std::abs(int{a[i]} - int{b[i]});
+            worst = std::max(worst, off);
+            pixel_squares += off * off;
+        }
+        result.largest = std::max(result.largest, worst);
+        if (worst > kSteps) {
+            ++odd;
+        } else {
+            squares += pixel_squares;
+        }
+    }
+    result.odd_share = static_cast<double>(odd) / static_cast<double>(a.size() / 4);
+    result.psnr = squares == 0 ? 1000 : 10 * std::log10(255.0 * 255 * static_cast<double>(a.size()) / squares);
+    return result;
+}
+
+void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings settings) {
+    settings.backend = Backend::kSprite;
+    const Frame sprite = renderer.render(scene, settings);
+    settings.backend = Backend::kTile;
+    const Frame tile = renderer.render(scene, settings);
+    CHECK(sprite.stats.backend == Backend::kSprite);
+    REQUIRE(tile.stats.backend == Backend::kTile);
+    CHECK(tile.stats.surfels_drawn == sprite.stats.surfels_drawn);
+    const Difference off = difference(sprite.rgba, tile.rgba);
+    CAPTURE(off.largest, off.odd_share, off.psnr);
+    CHECK(off.odd_share <= kOddShare);
+    CHECK(off.psnr >= kLeastPsnr);
+    CHECK(renderer.render(scene, settings).rgba == tile.rgba);
+}
+
+}  // namespace
+
+TEST_CASE("tiles and sprites agree on handmade scenes") {
+    Renderer renderer({});
+    for (const TileCase& each : tile_cases()) {
+        DYNAMIC_SECTION(each.name) {
+            HandmadeModel model(each.two_sided);
+            each.fill(model);
+            const Scene scene = scene_of(renderer.load(view_of(model.model())));
+            CaptureSettings settings;
+            settings.width = each.width;
+            settings.height = each.height;
+            settings.camera = each.camera;
+            settings.clip_to_scene = false;
+            check_agreement(renderer, scene, settings);
+            settings.prefilter = false;
+            check_agreement(renderer, scene, settings);
+        }
+    }
+}
+
+TEST_CASE("tiles and sprites agree on baked models, transformed, in every view") {
+    Renderer renderer({});
+    BakeStats stats;
+    const auto baked = [&](SourceMesh mesh) {
+        RepairReport report;
+        return renderer.load(
+            view_of(build_model(repair_mesh(std::move(mesh), {}, report, "shape"), BakeOptions{}, stats)));
+    };
+    const auto sphere = baked(shapes::bumpy_sphere(20'000)), part = baked(shapes::machined_part(48));
+    Scene scene;
+    scene.instances = {{sphere, {}},
+                       {part,
+                        {.scale = 0.7,
+                         .rotation = glm::dmat3(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1)),
+                         .translation = {0.9, 0.3, 0.2}}},
+                       {sphere, {.scale = 0.3, .translation = {-0.8, 0.5, 0.9}}}};
+    CaptureSettings settings;
+    settings.width = 333;
+    settings.height = 250;
+    for (const bool orthographic : {false, true}) {
+        for (const View view : {View::kShaded, View::kDepth, View::kAccumulation, View::kNormals, View::kPatches,
+                                View::kRepresentation, View::kOverlap, View::kSamples, View::kSurfelsOnly}) {
+            settings.camera = frame_camera(scene.bounds(), {.zoom = 1.4, .orthographic = orthographic}, settings.width,
+                                           settings.height);
+            settings.view = view;
+            CAPTURE(static_cast<int>(view), orthographic);
+            check_agreement(renderer, scene, settings);
+        }
+    }
+}
+
+TEST_CASE("a view that tiles cannot draw falls back to sprites and says so") {
+    Renderer renderer({});
+    HandmadeModel model;
+    model.add_surfels(sheet({-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, 8));
+    const Scene scene = scene_of(renderer.load(view_of(model.model())));
+    CaptureSettings settings;
+    settings.backend = Backend::kTile;
+    settings.view = View::kVisibility;
+    CHECK(renderer.render(scene, settings).stats.backend == Backend::kSprite);
+    settings.backend = Backend::kAuto;
+    CHECK(renderer.render(scene, settings).stats.backend == Backend::kSprite);
+    settings.view = View::kShaded;
+    const bool software = renderer.device_name().find("llvmpipe") != std::string::npos;
+    CHECK(renderer.render(scene, settings).stats.backend == (software ? Backend::kTile : Backend::kSprite));
+}
+
+TEST_CASE("lists without room grow until a frame is complete") {
+    // Every disk touches every tile: far more entries than a first frame makes room for.
+    Renderer renderer({});
+    std::vector<Disk> disks;
+    for (int i = 0; i < 64; ++i)
+        disks.push_back({{0, 0, -2 - 0.1f * static_cast<float>(i)}, {0, 0, 1}, 9, 0.01f, kRed});
+    HandmadeModel model;
+    model.add_surfels(disks);
+    CaptureSettings settings;
+    settings.camera = camera_at({0, 0, 0}, {0, 0, -1});
+    settings.clip_to_scene = false;
+    check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
+}
+
+TEST_CASE("tiles pass the validation layers") {
+    Renderer renderer({.validate = true});
+    HandmadeModel model;
+    model.add_surfels(sheet({-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, 30))
+        .add_triangles(quad({-0.2f, -0.5f, -2}, {0.5f, 0, 0}, {0, 0.9f, 0}, kGreen));
+    CaptureSettings settings;
+    settings.backend = Backend::kTile;
+    const Scene scene = scene_of(renderer.load(view_of(model.model())));
+    for (const std::uint32_t width : {64u, 200u}) {
+        settings.width = width;
+        CHECK(renderer.render(scene, settings).stats.backend == Backend::kTile);
+    }
+    CHECK(renderer.validation_messages().empty());
+}

@@ -110,6 +110,7 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
         bindings.bind(destination, pixels);
         device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
     } while (backend == Backend::kTile && !passes.tile.complete());
+    if (backend != Backend::kTile) passes.tile.forget();
 
     const std::span<const std::byte> mapped = pixels.mapped();
     std::vector<std::byte> bytes(mapped.begin(), mapped.begin() + static_cast<std::ptrdiff_t>(pixels.size()));

@@ -37,7 +37,9 @@ TileBuffers::TileBuffers(gpu::Device& device)
       report_(device, {.size = kIndexBytes,
                        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                        .memory = gpu::MemoryUse::readback,
-                       .name = "tile report"}) {}
+                       .name = "tile report"}) {
+    forget();
+}
 
 bool TileBuffers::fits(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries) const {
     return sizes_of(settings, splats, entries).largest <= device_.limits().maxStorageBufferRange;
@@ -93,6 +95,11 @@ std::uint64_t TileBuffers::entries_needed() const {
     std::uint32_t needed = 0;
     std::memcpy(&needed, report_.mapped().data(), sizeof needed);
     return needed;
+}
+
+void TileBuffers::forget() {
+    const std::uint32_t none = 0;
+    std::memcpy(report_.mapped().data(), &none, sizeof none);
 }
 
 }  // namespace splice

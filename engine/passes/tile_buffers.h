@@ -36,6 +36,8 @@ class TileBuffers {
     std::uint64_t count_bytes() const;
     /// List entries that the last frame needed; more than it had room for: it is not complete.
     std::uint64_t entries_needed() const;
+    /// As if there had been no frame before.
+    void forget();
     std::uint64_t capacity() const { return values_.capacity; }
 
   private:

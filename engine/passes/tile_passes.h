@@ -26,6 +26,8 @@ class TilePasses {
     /// After a frame: whether its lists had room. If not, prepare() makes it, provided that can_draw() still holds, and
     /// the frame is to be drawn again.
     bool complete() const { return buffers_.entries_needed() <= buffers_.capacity(); }
+    /// After a frame that another backend drew: the next one is judged afresh.
+    void forget() { buffers_.forget(); }
 
   private:
     struct Sets {

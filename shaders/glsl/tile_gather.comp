@@ -95,10 +95,13 @@ Meeting meet(PixelPlane at, TilePlane plane) {
     const vec2 q = ORTHOGRAPHIC ? plane.skew : vec2(at.u + plane.skew.x * at.e, at.v + plane.skew.y * at.e);
     const float uq = at.u * q.x + at.v * q.y;
     const float qq = q.x * q.x + q.y * q.y;
-    const float gain = clamp(-uq / max(qq, 1e-30), plane.h.x, plane.h.y);
-    // In front of the eye and not before the near plane: 0 < z / (1 + gain) <= 1.
-    const bool in_front = ORTHOGRAPHIC ? z - gain * plane.climb <= 1 : z * (1 + gain) > 0 && abs(z) <= abs(1 + gain);
-    meeting.beside_disk = !meeting.on_disk && uu + gain * (2 * uq + gain * qq) <= ee && in_front;
+    // The part of the solid in front of the near plane: z / (1 + gain) or z - gain climb is at most 1 there.
+    const float near_gain = ORTHOGRAPHIC ? (z - 1) / plane.climb : z - 1;
+    const bool grows = ORTHOGRAPHIC ? plane.climb > 0 : at.e > 0;
+    const float low = grows ? max(plane.h.x, near_gain) : plane.h.x;
+    const float high = grows ? plane.h.y : min(plane.h.y, near_gain);
+    const float gain = clamp(-uq / max(qq, 1e-30), low, high);
+    meeting.beside_disk = !meeting.on_disk && low <= high && uu + gain * (2 * uq + gain * qq) <= ee;
     const float h = meeting.beside_disk ? gain : 0;
     meeting.share = ORTHOGRAPHIC ? 1 : 1 + h;
     meeting.z = ORTHOGRAPHIC ? z - h * plane.climb : z;

@@ -1,48 +1,32 @@
 #include "engine/bench/bumpy_sphere.h"
 
+#include "preprocess/mesh/shapes.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/surfel_extent.h"
-
-#include <glm/glm.hpp>
+#include "preprocess/surfel/morton.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace splice::bench {
 
 namespace {
 
 constexpr std::uint32_t kPatchSurfels = 2048;
+constexpr float kReach = 1.2f;  // no radius is larger
 
 struct Sample {
-    glm::dvec3 position, normal;
+    Vec3f position, normal;
     double area;  // that it stands for
 };
 
-// The surface is |p| = r(p / |p|); its normal is the direction less the change of r across it.
-Sample sample_at(const glm::dvec3& d, double solid_angle) {
-    const double a = 7 * d.x, b = 7 * d.y + 1, c = 7 * d.z + 2, e = 31 * d.x + 17 * d.y, f = 29 * d.z;
-    const double r = 1 + 0.06 * std::sin(a) * std::sin(b) * std::sin(c) + 0.01 * std::sin(e) * std::sin(f);
-    const glm::dvec3 slope =
-        0.42 * glm::dvec3(std::cos(a) * std::sin(b) * std::sin(c), std::sin(a) * std::cos(b) * std::sin(c),
-                          std::sin(a) * std::sin(b) * std::cos(c)) +
-        glm::dvec3(0.31 * std::cos(e) * std::sin(f), 0.17 * std::cos(e) * std::sin(f),
-                   0.29 * std::sin(e) * std::cos(f));
-    const glm::dvec3 normal = glm::normalize(d - (slope - glm::dot(slope, d) * d) / r);
-    return {d * r, normal, solid_angle * r * r / glm::dot(normal, d)};
-}
-
-std::uint64_t morton_code(const glm::dvec3& position) {
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto cell = static_cast<std::uint64_t>((position[axis] + 1.2) / 2.4 * 65536);
-        for (int bit = 0; bit < 16; ++bit)
-            code |= (cell >> bit & 1) << (3 * bit + axis);
-    }
-    return code;
+// `d`: unit direction.
+Sample sample_at(const Vec3d& d, double solid_angle) {
+    const double r = shapes::bumpy_radius(d);
+    const Vec3d normal = shapes::bumpy_normal(d);
+    return {(r * d).cast<float>(), normal.cast<float>(), solid_angle * r * r / normal.dot(d)};
 }
 
 std::vector<Sample> lattice(std::uint32_t count) {
@@ -52,9 +36,9 @@ std::vector<Sample> lattice(std::uint32_t count) {
         const double z = 1 - (2.0 * i + 1) / count, ring = std::sqrt(1 - z * z), turn = golden * i;
         samples.push_back(sample_at({ring * std::cos(turn), ring * std::sin(turn), z}, 4 * std::numbers::pi / count));
     }
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
     for (std::uint32_t i = 0; i < count; ++i)
-        order.emplace_back(morton_code(samples[i].position), i);
+        order.emplace_back(morton_code(samples[i].position, Vec3f::Constant(-kReach), 2 * kReach), i);
     std::sort(order.begin(), order.end());
     std::vector<Sample> sorted;
     for (const auto& [code, i] : order)
@@ -65,12 +49,11 @@ std::vector<Sample> lattice(std::uint32_t count) {
 format::Surfel surfel_of(const Sample& sample, double depth) {
     format::Surfel surfel{};
     for (int axis = 0; axis < 3; ++axis)
-        surfel.position[axis] = static_cast<float>(sample.position[axis]);
+        surfel.position[axis] = sample.position[axis];
     const float radius = static_cast<float>(std::sqrt(depth * sample.area / std::numbers::pi));
     surfel.radius = half_at_least(radius);
     surfel.extent = encode_extent({.epsilon = radius}, float_from_half(surfel.radius));
-    surfel.normal = encode_octahedral(static_cast<float>(sample.normal.x), static_cast<float>(sample.normal.y),
-                                      static_cast<float>(sample.normal.z));
+    surfel.normal = encode_octahedral(sample.normal.x(), sample.normal.y(), sample.normal.z());
     surfel.colour[0] = 0;
     surfel.colour[1] = 137;  // sRGB of a quarter
     surfel.colour[2] = 255;

@@ -8,8 +8,8 @@
 
 namespace splice::bench {
 
-/// Every point of the surface lies under about `depth` of the `count` disks. Positions are source units: the radius is
-/// r = 1 + 0.06 sin 7x sin(7y+1) sin(7z+2) + 0.01 sin(31x+17y) sin 29z in the direction (x, y, z).
+/// The surface of shapes::bumpy_radius; every point of it lies under about `depth` of the `count` disks. Positions are
+/// source units.
 Model bumpy_sphere(std::uint32_t count, double depth);
 
 }  // namespace splice::bench

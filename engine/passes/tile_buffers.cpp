@@ -7,7 +7,7 @@ namespace splice {
 
 namespace {
 
-constexpr std::uint64_t kRecordBytes = 96, kBoundsBytes = 8, kIndexBytes = 4;
+constexpr std::uint64_t kBoundsBytes = 8, kIndexBytes = 4;
 // Chunks are what orders the lists. Few make little work for the prefix sum, many make work for all of a device's
 // units.
 constexpr std::uint64_t kFewestChunks = 16, kMostChunks = 64, kChunkSplats = 4096;
@@ -22,7 +22,7 @@ Sizes sizes_of(const FrameSettings& settings, std::uint64_t splats, std::uint64_
     sizes.tiles_y = (settings.height + kTileHeight - 1) / kTileHeight;
     sizes.chunks = std::clamp(splats / kChunkSplats / 8 * 8, kFewestChunks, kMostChunks);
     const std::uint64_t tiles = sizes.tiles_x * sizes.tiles_y;
-    sizes.largest = std::max({splats * kRecordBytes, tiles * sizes.chunks * kIndexBytes, entries * kIndexBytes});
+    sizes.largest = std::max({splats * kTileRecordBytes, tiles * sizes.chunks * kIndexBytes, entries * kIndexBytes});
     return sizes;
 }
 
@@ -48,7 +48,7 @@ bool TileBuffers::fits(const FrameSettings& settings, std::uint64_t splats, std:
 void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries) {
     const Sizes sizes = sizes_of(settings, splats, entries);
     const std::uint64_t tiles = sizes.tiles_x * sizes.tiles_y;
-    grow(records_, "splat records", splats * kRecordBytes);
+    grow(records_, "splat records", splats * kTileRecordBytes);
     grow(bounds_, "splat bounds", splats * kBoundsBytes);
     grow(counts_, "tile counts", tiles * sizes.chunks * kIndexBytes);
     grow(starts_, "tile starts", (tiles + 1) * kIndexBytes);
@@ -65,7 +65,7 @@ void TileBuffers::grow(gpu::Buffer& buffer, const char* name, std::uint64_t byte
     if (buffer && buffer.size() >= bytes) return;
     // Some more than is needed, so that a model that turns does not make new ones every frame.
     const std::uint64_t ample = std::min<std::uint64_t>(bytes + bytes / 4, device_.limits().maxStorageBufferRange);
-    buffer = gpu::Buffer(device_, {.size = std::max<std::uint64_t>(ample / kRecordBytes * kRecordBytes, bytes),
+    buffer = gpu::Buffer(device_, {.size = std::max<std::uint64_t>(ample / kTileRecordBytes * kTileRecordBytes, bytes),
                                    .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                    .name = name});
 }

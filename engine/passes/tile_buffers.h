@@ -14,6 +14,11 @@ namespace splice {
 
 /// Pixels; TILE of tile.glsl.
 inline constexpr std::uint32_t kTileWidth = 8, kTileHeight = 4;
+/// Bytes of TileSplat of tile.glsl.
+inline constexpr std::uint64_t kTileRecordBytes = 96;
+/// What a workgroup takes: surfels of tile_setup.comp (SHARE); chunks of tile_count.comp and tile_list.comp, tiles of
+/// tile_scan.comp (local_size_x).
+inline constexpr std::uint32_t kSetupShare = 64, kChunkGroup = 8, kScanGroup = 64;
 
 /// The buffers of one frame as its graph knows them.
 struct TileHandles {

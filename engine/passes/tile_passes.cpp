@@ -16,8 +16,6 @@ namespace splice {
 namespace {
 
 constexpr VkShaderStageFlags kCompute = VK_SHADER_STAGE_COMPUTE_BIT;
-// Invocations of a workgroup; of the setup, surfels.
-constexpr std::uint32_t kSetupGroup = 64, kChunkGroup = 8, kScanGroup = 64;
 constexpr std::uint32_t kWidestDispatch = 65535;  // workgroups, of every device
 
 enum TileBinding : std::uint32_t {
@@ -197,7 +195,7 @@ void TilePasses::setup(const graph::PassContext& context, const FrameSettings& s
                     vkCmdPushConstants(context.commands, layout_.handle(), kCompute, 0, sizeof constants, &constants);
                     vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 1, 1,
                                             &chunk.set, 0, nullptr);
-                    const std::uint32_t all = groups(constants.surfel_count, kSetupGroup);
+                    const std::uint32_t all = groups(constants.surfel_count, kSetupShare);
                     vkCmdDispatch(context.commands, std::min(all, kWidestDispatch), groups(all, kWidestDispatch), 1);
                 }
             }

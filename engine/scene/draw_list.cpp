@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace splice {
 
@@ -15,6 +16,10 @@ enum class Containment { kOutside, kPartly, kInside };
 
 // Pixels by which a splat may exceed its disk: sqrt(0.6) of the prefilter, up to 1 of a speck's pixel, and rounding.
 constexpr double kPrefilterReach = 1.5;
+
+// Radii from a disk's centre to the rim of its solid's faces, at most: the surface leaves the plane by at most a radius
+// (surfel_extent.h).
+constexpr double kSolidReach = std::numbers::sqrt2;
 
 template <typename T>
 glm::dvec3 vector_of(const T (&v)[3]) {
@@ -139,7 +144,7 @@ class Culler {
     // Upper bound of the size in pixels of the point that encloses any splat of a patch inside the frustum: for |a|,
     // |b| <= r, (x + a) / (d + b) - x / d is at most r (1 + |x / d|) / (d - r).
     double largest_splat(const format::Patch& patch, double nearest) const {
-        const double radius = patch.max_surfel_radius * draws_.scale;
+        const double radius = kSolidReach * patch.max_surfel_radius * draws_.scale;
         const double stretch = camera_.orthographic ? 1 : (1 + std::max(half_x_, half_y_)) / nearest;
         return 2 * (scale_ * radius * stretch + kPrefilterReach);
     }

@@ -127,7 +127,9 @@ void main() {
 
     float triangles[TILE.y], visible[TILE.y], along_axis[TILE.y];
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {
-        triangles[row] = visible[row] = texelFetch(triangle_depth, corner + ivec2(0, row), 0).r;
+        // Beyond the picture's edge any depth will do: what is stored there is dropped.
+        const ivec2 pixel = min(corner + ivec2(0, row), ivec2(frame.viewport) - 1);
+        triangles[row] = visible[row] = texelFetch(triangle_depth, pixel, 0).r;
         const vec2 off = (vec2(corner) + vec2(0.5, 0.5 + row) - frame.viewport * 0.5) / frame.pixel_scale;
         along_axis[row] = ORTHOGRAPHIC ? 1 : inversesqrt(1 + dot(off, off));
     }

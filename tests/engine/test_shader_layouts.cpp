@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <regex>
 #include <span>
 #include <string>
@@ -50,9 +51,10 @@ class Reflection {
     Reflection(const Reflection&) = delete;
     Reflection& operator=(const Reflection&) = delete;
 
-    /// The blocks of this kind in the descriptor set. `inside`: of the elements of the runtime array that is their only
-    /// member.
-    std::vector<Layout> blocks(spvc_resource_type kind, bool inside = false, unsigned set = 0) const {
+    /// The blocks of this kind at the descriptor set's binding, by default at any. `inside`: of the elements of the
+    /// runtime array that is their only member.
+    std::vector<Layout> blocks(spvc_resource_type kind, bool inside = false, unsigned set = 0,
+                               std::optional<unsigned> binding = {}) const {
         spvc_resources resources = nullptr;
         REQUIRE(spvc_compiler_create_shader_resources(compiler_, &resources) == SPVC_SUCCESS);
         const spvc_reflected_resource* list = nullptr;
@@ -62,6 +64,8 @@ class Reflection {
         for (std::size_t i = 0; i < count; ++i) {
             if (kind != SPVC_RESOURCE_TYPE_PUSH_CONSTANT &&
                 spvc_compiler_get_decoration(compiler_, list[i].id, SpvDecorationDescriptorSet) != set)
+                continue;
+            if (binding && spvc_compiler_get_decoration(compiler_, list[i].id, SpvDecorationBinding) != *binding)
                 continue;
             spvc_type_id id = list[i].base_type_id;
             if (inside) {
@@ -104,11 +108,12 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
 }
 
 // Every block of the kind in every shader; at least one shader must have it.
-void expect_everywhere(spvc_resource_type kind, bool inside, const Layout& expected, unsigned set = 0) {
+void expect_everywhere(spvc_resource_type kind, bool inside, const Layout& expected, unsigned set = 0,
+                       std::optional<unsigned> binding = {}) {
     int found = 0;
     for (const auto& [name, words] : shaders()) {
         CAPTURE(name);
-        for (const Layout& layout : Reflection(words).blocks(kind, inside, set)) {
+        for (const Layout& layout : Reflection(words).blocks(kind, inside, set, binding)) {
             ++found;
             CHECK(layout.size == expected.size);
             CHECK(layout.offsets == expected.offsets);
@@ -154,6 +159,20 @@ TEST_CASE("tile uniforms have the layout that the shaders declare") {
                       2);
 }
 
+TEST_CASE("surfels and records of splats have the layout that the tile shaders declare") {
+    using format::Surfel;
+    // In words: the radius with the extent, the colour with the first bend.
+    expect_everywhere(
+        SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true,
+        {sizeof(Surfel),
+         {MEMBER(Surfel, position), MEMBER(Surfel, position) + 4, MEMBER(Surfel, position) + 8, MEMBER(Surfel, radius),
+          MEMBER(Surfel, normal), MEMBER(Surfel, colour), MEMBER(Surfel, shading_bend) + 1, MEMBER(Surfel, patch)}},
+        1, 0);
+    CHECK(offsetof(Surfel, extent) == offsetof(Surfel, radius) + 2);
+    CHECK(offsetof(Surfel, shading_bend) == offsetof(Surfel, colour) + 3);
+    expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true, {kTileRecordBytes, {0}}, 2, 1);
+}
+
 TEST_CASE("constants that C++ and GLSL share have the same values") {
     const auto constant = [](const std::string& file, const std::string& name, int component = 0) {
         std::ifstream stream(test::source_file("shaders/glsl/" + file));
@@ -171,6 +190,10 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
     CHECK(constant("include/tile.glsl", "TILE") == kTileWidth);
     CHECK(constant("include/tile.glsl", "TILE", 1) == kTileHeight);
+    CHECK(constant("tile_setup.comp", "SHARE") == kSetupShare);
+    CHECK(constant("tile_count.comp", "local_size_x") == kChunkGroup);
+    CHECK(constant("tile_list.comp", "local_size_x") == kChunkGroup);
+    CHECK(constant("tile_scan.comp", "local_size_x") == kScanGroup);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS")) == kSwellStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);

@@ -2,6 +2,7 @@
 #include "engine/capture/capture.h"
 #include "tests/engine/handmade_model.h"
 #include "tests/engine/splat_oracle.h"
+#include "tests/engine/test_cameras.h"
 
 #include <catch2/catch.hpp>
 
@@ -20,22 +21,6 @@ struct SplatCase {
     bool prefilter = true;
     bool shows = true;  // false: edge-on between pixel centres, where a triangle would not show either
 };
-
-Camera looking_down_z(double near_plane = 0.01) {
-    Camera camera;
-    camera.eye = {0, 0, 0};
-    camera.target = {0, 0, -1};
-    camera.fov_y_degrees = 60;
-    camera.near_plane = near_plane;
-    camera.far_plane = 100;
-    return camera;
-}
-
-Camera parallel(Camera camera) {
-    camera.orthographic = true;
-    camera.orthographic_height = 2;
-    return camera;
-}
 
 glm::vec3 tilted(double degrees, double roll_degrees = 25) {
     const double tilt = glm::radians(degrees), roll = glm::radians(roll_degrees);

@@ -4,6 +4,7 @@
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/surfel_extent.h"
 #include "tests/engine/handmade_model.h"
+#include "tests/engine/test_cameras.h"
 
 #include <catch2/catch.hpp>
 
@@ -18,18 +19,6 @@ namespace {
 constexpr std::uint32_t kSize = 160;
 // Single precision decides otherwise only where the truth is as close as this, in radii.
 constexpr double kUndecided = 3e-3;
-
-Camera looking_down_z(bool orthographic) {
-    Camera camera;
-    camera.eye = {0, 0, 0};
-    camera.target = {0, 0, -1};
-    camera.fov_y_degrees = 60;
-    camera.near_plane = 0.01;
-    camera.far_plane = 100;
-    camera.orthographic = orthographic;
-    camera.orthographic_height = 2;
-    return camera;
-}
 
 /// How near to the disk's axis the ray comes within the solid, in radii.
 double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dvec3& ray, double near_plane) {
@@ -48,29 +37,30 @@ double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dv
     return glm::length(across + t * along) / radius;
 }
 
-void check_cover(const Disk& disk, bool orthographic, bool quads, double near_plane = 0.01) {
+void check_cover(const Disk& disk, bool orthographic, bool quads, double near_plane = 0.01,
+                 std::uint32_t size = kSize) {
     Renderer renderer({});
     HandmadeModel model(true);
     model.add_surfels({disk});
     Scene scene = scene_of(renderer.load(view_of(model.model())));
     CaptureSettings settings;
-    settings.width = settings.height = kSize;
-    settings.camera = looking_down_z(orthographic);
-    settings.camera.near_plane = near_plane;
+    settings.width = settings.height = size;
+    settings.camera = looking_down_z(near_plane);
+    if (orthographic) settings.camera = parallel(settings.camera);
     settings.clip_to_scene = false;
     settings.force_quads = quads;
     settings.want_depth = true;
     const Frame frame = renderer.render(scene, settings);
-    const double scale = orthographic ? kSize / 2.0 : kSize / 2.0 / std::tan(glm::radians(30.0));
+    const double scale = orthographic ? size / 2.0 : size / 2.0 / std::tan(glm::radians(30.0));
     int covered = 0, wrong_cover = 0, wrong_depth = 0;
-    for (std::uint32_t y = 0; y < kSize; ++y) {
-        for (std::uint32_t x = 0; x < kSize; ++x) {
-            const glm::dvec2 offset((x + 0.5 - kSize / 2.0) / scale, -(y + 0.5 - kSize / 2.0) / scale);
+    for (std::uint32_t y = 0; y < size; ++y) {
+        for (std::uint32_t x = 0; x < size; ++x) {
+            const glm::dvec2 offset((x + 0.5 - size / 2.0) / scale, -(y + 0.5 - size / 2.0) / scale);
             const glm::dvec3 origin = orthographic ? glm::dvec3(offset, 0) : glm::dvec3(0);
             const glm::dvec3 ray = orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset, -1);
             const double nearest = nearest_to_axis(disk, origin, ray, near_plane);
             if (std::abs(nearest - 1) < kUndecided) continue;
-            const std::size_t i = std::size_t{y} * kSize + x;
+            const std::size_t i = std::size_t{y} * size + x;
             covered += frame.coverage[i] != 0 ? 1 : 0;
             wrong_cover += (frame.coverage[i] != 0) != (nearest < 1) ? 1 : 0;
             // Somewhere within the solid.
@@ -98,6 +88,11 @@ TEST_CASE("a disk covers the surface that it stands for, from every side") {
     }
 }
 
+TEST_CASE("a disk that is as thick as wide shows whole where the disk alone would fit a point") {
+    check_cover({{0.02f, 0.01f, -2}, {0, 1, 0.05f}, 0.5f, 0.01f, kRed, 0.5f, 0.5f}, false, false, 0.01, 480);
+    check_cover({{0.02f, 0.01f, -2}, {0, 1, 0.05f}, 0.5f, 0.01f, kRed, 0.5f, 0.5f}, true, false, 0.01, 480);
+}
+
 TEST_CASE("a thick disk around the near plane covers what lies in front of it") {
     for (const bool orthographic : {false, true}) {
         CAPTURE(orthographic);
@@ -120,7 +115,7 @@ TEST_CASE("what is met beside a disk yields to the disks around it") {
     scene.lighting.lights.clear();
     CaptureSettings settings;
     settings.width = settings.height = kSize;
-    settings.camera = looking_down_z(false);
+    settings.camera = looking_down_z();
     settings.clip_to_scene = false;
     const Frame frame = renderer.render(scene, settings);
     const std::uint8_t* beside = &frame.rgba[4 * (std::size_t{kSize / 2 + 3} * kSize + kSize / 2)];

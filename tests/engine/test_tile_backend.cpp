@@ -4,6 +4,7 @@
 #include "preprocess/mesh/read_mesh.h"
 #include "preprocess/mesh/shapes.h"
 #include "tests/engine/handmade_model.h"
+#include "tests/engine/test_cameras.h"
 
 #include <catch2/catch.hpp>
 
@@ -30,22 +31,6 @@ struct TileCase {
     bool two_sided = false;
     std::uint32_t width = 203, height = 150;  // pixels; no multiples of a tile
 };
-
-Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double near_plane = 0.01) {
-    Camera camera;
-    camera.eye = eye;
-    camera.target = target;
-    camera.fov_y_degrees = 60;
-    camera.near_plane = near_plane;
-    camera.far_plane = 100;
-    return camera;
-}
-
-Camera parallel(Camera camera, double height) {
-    camera.orthographic = true;
-    camera.orthographic_height = height;
-    return camera;
-}
 
 std::vector<Disk> thick(std::vector<Disk> disks) {
     for (Disk& disk : disks) {
@@ -75,7 +60,7 @@ std::vector<Disk> scattered(int count, float smallest, float largest, float spre
 }
 
 std::vector<TileCase> tile_cases() {
-    const Camera eye = camera_at({0, 0, 0}, {0, 0, -1});
+    const Camera eye = looking_down_z();
     const auto wall = [](float z, int count, std::uint32_t colour) {
         return sheet({-1, -0.8f, z}, {2, 0, 0}, {0, 1.6f, 0}, count, colour);
     };
@@ -99,7 +84,7 @@ std::vector<TileCase> tile_cases() {
              m.add_surfels(sheet({-1, -0.3f, 0.3f}, {2, 0, 0}, {0, 0.1f, -2}, 15, kRed))
                  .add_surfels({{{0, -0.4f, 0}, {0, 1, 0}, 5, 0.01f, kBlue}});
          },
-         camera_at({0, 0, 0}, {0, 0, -1}, 0.1), true},
+         looking_down_z(0.1), true},
         {"centres off the screen, disks of 2,000 pixels",
          [&](HandmadeModel& m) {
              m.add_surfels({{{6, 0, -2}, {0.2f, 0, 1}, 6.5f, 0.01f, kRed},
@@ -252,7 +237,7 @@ TEST_CASE("lists without room grow until a frame is complete") {
     HandmadeModel model;
     model.add_surfels(disks);
     CaptureSettings settings;
-    settings.camera = camera_at({0, 0, 0}, {0, 0, -1});
+    settings.camera = looking_down_z();
     settings.clip_to_scene = false;
     check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
 }

@@ -1,18 +1,41 @@
 // Where transient resources lie: apart while they live together, in little more than the bytes alive at once.
+#include "engine/bench/graph/families.h"
 #include "engine/render_graph/compile.h"
 #include "engine/render_graph/plan_statistics.h"
-#include "tests/render_graph/graph_families.h"
 #include "tests/render_graph/hazard_checker.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
 
 using namespace splice;
+
+constexpr uint64_t kAlignment = 256;
+
+/// Of the families that splice-bench measures.
+bench::Family family_of(std::string_view name) {
+    const std::vector<bench::Family> all = bench::families();
+    return *std::find_if(all.begin(), all.end(), [&](const bench::Family& family) { return family.name == name; });
+}
+
+void declare(graph::Graph& graph, const bench::Family& family, uint32_t passes, uint32_t seed) {
+    family.declare(graph, {.passes = passes, .seed = seed, .sizes = bench::ImageSizes::log_uniform});
+}
+
+/// Four bytes a pixel.
+std::vector<graph::MemoryRequirement> sizes_of(const graph::Graph& graph) {
+    std::vector<graph::MemoryRequirement> sizes;
+    for (const graph::ResourceDeclaration& resource : graph.declaration().resources) {
+        const uint64_t bytes = uint64_t{4} * resource.image.width * resource.image.height;
+        sizes.push_back({(bytes + kAlignment - 1) / kAlignment * kAlignment, kAlignment, 1});
+    }
+    return sizes;
+}
 
 struct Compiled {
     graph::Graph graph;
@@ -20,9 +43,9 @@ struct Compiled {
     graph::CompileOptions options;
     graph::Plan plan;
 
-    Compiled(test::Family family, uint32_t passes, uint32_t seed, bool alias = true) {
-        test::declare_family(graph, family, passes, seed);
-        sizes = test::log_uniform_sizes(graph, seed + 1000, 256);
+    Compiled(const bench::Family& family, uint32_t passes, uint32_t seed, bool alias = true) {
+        declare(graph, family, passes, seed);
+        sizes = sizes_of(graph);
         options.alias = alias;
         options.memory = [this](uint32_t resource, const graph::PlannedResource&) { return sizes[resource]; };
         plan = graph::compile(graph, options);
@@ -41,15 +64,15 @@ bool overlap(const graph::PlannedResource& a, const graph::PlannedResource& b) {
 }  // namespace
 
 TEST_CASE("what lives together lies apart, aligned and within its heap, in frames of every shape and size") {
-    for (const test::Family family : test::kFamilies) {
+    for (const bench::Family& family : bench::families()) {
         for (const uint32_t passes : {4U, 40U, 400U, 1024U}) {
             const Compiled frame(family, passes, passes);
-            CAPTURE(test::name_of(family), passes);
+            CAPTURE(family.name, passes);
             const std::vector<graph::PlannedResource>& resources = frame.plan.resources;
             uint32_t faults = 0;
             for (size_t a = 0; a < resources.size(); ++a) {
                 if (resources[a].heap == graph::none) continue;
-                faults += resources[a].offset % 256 != 0 || resources[a].size != frame.sizes[a].size ||
+                faults += resources[a].offset % kAlignment != 0 || resources[a].size != frame.sizes[a].size ||
                           resources[a].offset + resources[a].size > frame.plan.heaps[0].size;
                 for (size_t b = a + 1; b < resources.size(); ++b)
                     faults += resources[b].heap != graph::none && overlap(resources[a], resources[b]);
@@ -60,18 +83,18 @@ TEST_CASE("what lives together lies apart, aligned and within its heap, in frame
 }
 
 TEST_CASE("frames of hundreds of passes have no hazard") {
-    for (const test::Family family : test::kFamilies) {
+    for (const bench::Family& family : bench::families()) {
         const Compiled frame(family, 300, 1);
         std::vector<uint64_t> sizes;
         for (const graph::MemoryRequirement& memory : frame.sizes)
             sizes.push_back(memory.size);
-        CAPTURE(test::name_of(family));
+        CAPTURE(family.name);
         CHECK(test::find_hazards(frame.graph, frame.plan, sizes).empty());
     }
 }
 
 TEST_CASE("memory stays within a tenth of the most that is alive at once") {
-    for (const test::Family family : test::kFamilies) {
+    for (const bench::Family& family : bench::families()) {
         for (const uint32_t passes : {16U, 64U, 256U, 1024U, 4096U}) {
             const uint32_t seeds = passes > 1000 ? 3 : 12;
             double worst = 0, sum = 0;
@@ -80,28 +103,26 @@ TEST_CASE("memory stays within a tenth of the most that is alive at once") {
                 worst = std::max(worst, ratio);
                 sum += ratio;
             }
-            CAPTURE(test::name_of(family), passes);
+            CAPTURE(family.name, passes);
             CHECK(worst >= 1);
-            // One of the twelve frames of 256 layered random passes needs more tries than it is given.
-            const bool hard = family == test::Family::layered_random && passes == 256;
-            CHECK(worst <= (hard ? 1.14 : 1.10));
+            CHECK(worst <= 1.10);
             CHECK(sum / seeds <= 1.08);
         }
     }
 }
 
 TEST_CASE("without aliasing every resource has bytes of its own") {
-    const Compiled frame(test::Family::layered_random, 200, 3, false);
+    const Compiled frame(family_of("layered"), 200, 3, false);
     const graph::PlanStatistics statistics = graph::measure(frame.graph, frame.plan);
     CHECK(statistics.heap_bytes == statistics.unaliased_bytes);
     CHECK(statistics.peak_live_bytes < statistics.unaliased_bytes);
-    const Compiled aliased(test::Family::layered_random, 200, 3);
+    const Compiled aliased(family_of("layered"), 200, 3);
     CHECK(graph::measure(aliased.graph, aliased.plan).heap_bytes < statistics.heap_bytes / 3);
 }
 
 TEST_CASE("resources of one size share no more bytes than are alive at once") {
     graph::Graph graph;
-    test::declare_family(graph, test::Family::layered_random, 500, 9);
+    declare(graph, family_of("layered"), 500, 9);
     graph::CompileOptions options;
     options.memory = [](uint32_t, const graph::PlannedResource&) { return graph::MemoryRequirement{5000, 64, 1}; };
     const graph::Plan plan = graph::compile(graph, options);
@@ -110,7 +131,7 @@ TEST_CASE("resources of one size share no more bytes than are alive at once") {
 }
 
 TEST_CASE("times are told by phase and change nothing") {
-    const Compiled frame(test::Family::deferred, 60, 2);
+    const Compiled frame(family_of("deferred"), 60, 2);
     graph::CompileTimings timings;
     timings.phases.resize(3);
     CHECK(graph::compile(frame.graph, frame.options, &timings) == frame.plan);
@@ -127,9 +148,9 @@ TEST_CASE("times are told by phase and change nothing") {
 
 TEST_CASE("a declaration equals its like and nothing else") {
     graph::Graph a, b, c;
-    test::declare_family(a, test::Family::layered_random, 100, 1);
-    test::declare_family(b, test::Family::layered_random, 100, 1);
-    test::declare_family(c, test::Family::layered_random, 100, 2);
+    declare(a, family_of("layered"), 100, 1);
+    declare(b, family_of("layered"), 100, 1);
+    declare(c, family_of("layered"), 100, 2);
     CHECK(a.declaration() == b.declaration());
     CHECK(a.key() == b.key());
     CHECK_FALSE(a.declaration() == c.declaration());
@@ -138,7 +159,7 @@ TEST_CASE("a declaration equals its like and nothing else") {
     CHECK_FALSE(a.declaration() == b.declaration());
     CHECK_FALSE(a.key() == b.key());
     b.clear();
-    test::declare_family(b, test::Family::layered_random, 100, 1);
+    declare(b, family_of("layered"), 100, 1);
     CHECK(a.key() == b.key());
 }
 
@@ -169,7 +190,7 @@ TEST_CASE("the key of a declaration tells every part of it, in whatever order wh
 }
 
 TEST_CASE("random orders differ by their seed, and batches are taken apart into one barrier a command") {
-    Compiled frame(test::Family::layered_random, 100, 4);
+    Compiled frame(family_of("layered"), 100, 4);
     CHECK(std::is_sorted(frame.plan.order.begin(), frame.plan.order.end()));
     const graph::PlanStatistics batched = graph::measure(frame.graph, frame.plan);
     frame.options.random_order = 1;

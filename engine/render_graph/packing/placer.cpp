@@ -13,7 +13,7 @@ struct Effort {
     double excess;
     size_t placed_items, times_each;
 };
-constexpr Effort kEfforts[] = {{0.065, 1500, 4}, {0.08, 8000, 20}, {0.09, 40000, 60}};
+constexpr Effort kEfforts[] = {{0.065, 1500, 4}, {0.08, 8000, 20}, {0.09, 160000, 60}};
 constexpr uint32_t kPlacements = 600;
 // Of the placements, so many go on from one first order.
 constexpr uint32_t kRepairs = 4;

@@ -52,8 +52,10 @@ vec3 view_albedo(vec3 albedo, uint patch_number, bool is_surfel) {
     }
 }
 
+vec3 normal_colour(vec3 normal) { return normal * 0.5 + 0.5; }
+
 vec3 view_colour(vec3 albedo, vec3 normal, vec3 position, uint patch_number, bool is_surfel) {
-    if (VIEW == VIEW_NORMALS) return normal * 0.5 + 0.5;
+    if (VIEW == VIEW_NORMALS) return normal_colour(normal);
     return shade(view_albedo(albedo, patch_number, is_surfel), normal, position);
 }
 

@@ -92,9 +92,9 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
     }
     if (VIEW != VIEW_NORMALS) {
         for (uint i = 0; i < frame.light_count; ++i) {
-            const LightRecord record = lights[i];
+            const LightRecord light_record = lights[i];
             [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
-                const Light light = light_at(record, normals[p], positions[p]);
+                const Light light = light_at(light_record, normals[p], positions[p]);
                 diffuse[p] += light.diffuse;
                 highlights[p] += light.highlight;
             }
@@ -102,7 +102,7 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
     }
     const vec3 albedo = view_albedo(decode_srgb(record.colour), record.patch_number, true);
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
-        lit[p] = VIEW == VIEW_NORMALS ? normals[p] * 0.5 + 0.5 : albedo * diffuse[p] + frame.specular * highlights[p];
+        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p]) : albedo * diffuse[p] + frame.specular * highlights[p];
     }
     SurfelColour colour;
     colour.centre = lit[0];

@@ -6,7 +6,7 @@
 #ifndef SPLICE_TILE_GLSL
 #define SPLICE_TILE_GLSL
 
-// engine/passes/tile_passes.h
+// engine/passes/tile_buffers.h
 const uvec2 TILE = uvec2(8, 4);  // pixels; a row is a vector of a CPU's device
 
 layout(set = 2, binding = 0, std140) uniform TileUniforms {

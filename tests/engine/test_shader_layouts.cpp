@@ -4,6 +4,7 @@
 #include "engine/passes/tile_buffers.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/model_format/surfel_extent.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
@@ -161,7 +162,7 @@ TEST_CASE("tile uniforms have the layout that the shaders declare") {
 
 TEST_CASE("surfels and records of splats have the layout that the tile shaders declare") {
     using format::Surfel;
-    // In words: the radius with the extent, the colour with the first bend.
+    // In words: the radius with the extent, the colour with the first bend, the patch with the clip line.
     expect_everywhere(
         SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true,
         {sizeof(Surfel),
@@ -169,6 +170,7 @@ TEST_CASE("surfels and records of splats have the layout that the tile shaders d
           MEMBER(Surfel, normal), MEMBER(Surfel, colour), MEMBER(Surfel, shading_bend) + 1, MEMBER(Surfel, patch)}},
         1, 0);
     CHECK(offsetof(Surfel, extent) == offsetof(Surfel, radius) + 2);
+    CHECK(offsetof(Surfel, clip) == offsetof(Surfel, patch) + 2);
     CHECK(offsetof(Surfel, shading_bend) == offsetof(Surfel, colour) + 3);
     expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true, {kTileRecordBytes, {0}}, 2, 1);
 }
@@ -198,6 +200,8 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    CHECK(constant("include/surfel_frame.glsl", "CLIP_DIRECTIONS") == kClipDirections);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "CLIP_STEPS")) == kClipSteps);
     const double lean = constant("include/surfel_frame.glsl", "LARGEST_LEAN");
     const double turn = constant("include/surfel_frame.glsl", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));

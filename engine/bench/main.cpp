@@ -4,6 +4,7 @@
 #include "engine/bench/bench_frame.h"
 #include "engine/bench/bench_quality.h"
 #include "engine/bench/graph/graph_command.h"
+#include "engine/bench/quality_command.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
@@ -142,7 +143,15 @@ int run(int argc, char** argv) {
     bench::GraphCommand graph_command;
     const CLI::App& graph = bench::add_graph_command(app, graph_command);
 
+    bench::QualityCommand quality_command;
+    quality_command.folder = default_folder();
+    const CLI::App& quality = bench::add_quality_command(app, quality_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (quality.parsed()) {
+        bench::run_quality_command(quality_command);
+        return 0;
+    }
     if (graph.parsed()) {
         bench::run_graph_command(graph_command);
         return 0;

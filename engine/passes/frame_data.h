@@ -18,7 +18,8 @@
 namespace splice {
 
 struct FrameSettings {
-    std::uint32_t width = 512, height = 512;  // pixels
+    std::uint32_t width = 512, height = 512;  // samples: pixels of the picture times antialias
+    std::uint32_t antialias = 1;              // samples along each side of a pixel
     Camera camera;
     View view = View::kShaded;
     double epsilon_scale = 1;
@@ -36,7 +37,7 @@ class FrameData {
   public:
     explicit FrameData(gpu::Device& device);
     /// No submitted work may still read the frame before.
-    void update(const FrameSettings& settings, const Lighting& lighting);
+    void update(const FrameSettings& settings, const Lighting& lighting, const Background& background = {});
     VkDescriptorSet set() const { return set_; }
     const gpu::DescriptorSetLayout& layout() const { return layout_; }
 

@@ -8,8 +8,6 @@
 
 namespace splice {
 
-namespace {
-
 VkClearValue empty_picture(View view, const Background& background) {
     if (is_numeric(view)) {
         const float nothing = std::numeric_limits<float>::infinity();
@@ -18,8 +16,6 @@ VkClearValue empty_picture(View view, const Background& background) {
     const glm::vec3 colour(background.transparent ? glm::dvec3(0) : background.colour);
     return graph::clear_colour(colour.r, colour.g, colour.b, 0);
 }
-
-}  // namespace
 
 SurfelNormalisePass::SurfelNormalisePass(gpu::Device& device, const FrameData& data)
     : device_(device),
@@ -40,8 +36,9 @@ void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const 
     pass.input_attachment(targets.accumulation);
     pass.input_attachment(targets.depth);
     pass.depth_stencil_read(targets.depth);
-    targets.picture =
-        pass.colour_attachment(targets.picture, graph::Contents::clear(empty_picture(settings.view, background)));
+    targets.picture = pass.colour_attachment(
+        targets.picture, graph::Contents::clear(settings.antialias > 1 ? graph::clear_colour(0, 0, 0, 0)
+                                                                       : empty_picture(settings.view, background)));
     pass.record([this, targets, &settings, ownership](const graph::PassContext& context) {
         draw(context, targets, settings, ownership);
     });
@@ -53,7 +50,7 @@ void SurfelNormalisePass::draw(const graph::PassContext& context, const FrameTar
     for (const std::uint32_t owner : {kTriangleStencil, kSurfelStencil}) {
         if (ownership == SurfelOwnership::kWeight && owner == kTriangleStencil) continue;
         vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                          pipelines_[{frame_variant(settings), ownership, owner}].get(
+                          pipelines_[{frame_variant(settings), ownership, owner, settings.antialias > 1}].get(
                               device_, context, [&] { return pipeline_options(settings, ownership, owner); }));
         vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0,
                                 static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
@@ -83,6 +80,7 @@ gpu::GraphicsPipelineOptions SurfelNormalisePass::pipeline_options(const FrameSe
     options.fragment.constants[0] = owner == kSurfelStencil ? 1u : 0u;
     options.layout = layout_.handle();
     options.fragment.constants[3] = ownership == SurfelOwnership::kWeight ? 1u : 0u;
+    options.fragment.constants[4] = settings.antialias > 1 ? 1u : 0u;
     options.stencil_test = ownership == SurfelOwnership::kStencil;
     options.stencil_front = owned_by(owner);
     options.stencil_back = options.stencil_front;

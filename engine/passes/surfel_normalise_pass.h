@@ -16,6 +16,9 @@ namespace splice {
 /// is a weight.
 enum class SurfelOwnership : std::uint32_t { kStencil, kWeight };
 
+/// What a picture holds where nothing is drawn.
+VkClearValue empty_picture(View view, const Background& background);
+
 class SurfelNormalisePass {
   public:
     SurfelNormalisePass(gpu::Device& device, const FrameData& data);
@@ -40,7 +43,8 @@ class SurfelNormalisePass {
     gpu::ShaderModule vertex_, fragment_;
     gpu::DescriptorPool pool_;
     Inputs inputs_;
-    std::map<std::tuple<FrameVariant, SurfelOwnership, std::uint32_t>, graph::PassPipelines> pipelines_;  // by owner
+    // By owner, and by whether samples are to be resolved.
+    std::map<std::tuple<FrameVariant, SurfelOwnership, std::uint32_t, bool>, graph::PassPipelines> pipelines_;
 };
 
 }  // namespace splice

@@ -18,6 +18,9 @@
 
 namespace splice {
 
+/// Of a pixel; more than this no eye tells from this.
+inline constexpr std::uint32_t kMostSamplesPerSide = 8;
+
 /// A procedural model: "kind" and its numbers, checked against what the kind takes.
 struct ShapeDescription {
     std::string kind;
@@ -47,6 +50,7 @@ struct SceneDescription {
     Sides sides = Sides::kAsBaked;
     double epsilon_scale = 1;
     bool prefilter = true;
+    std::uint32_t antialias = 1;
 };
 
 /// Throws InputError("FILE: /path/of/value: expected ..., got ..."), SystemError.

@@ -32,6 +32,11 @@ layout(set = 0, binding = 0, std140) uniform FrameUniforms {
     uint light_count;
     float specular;
     float shininess;
+    float rim;
+    float rim_exponent;
+    vec4 background;       // linear; alpha 0: transparent
+    uint phong;            // 0 or 1: highlights by Blinn's half vector or Phong's mirrored light
+    uint samples_per_side; // of a pixel of the picture; all else counts samples as pixels
 } frame;
 
 struct LightRecord {

@@ -102,7 +102,9 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
     }
     const vec3 albedo = view_albedo(decode_srgb(record.colour), record.patch_number, true);
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
-        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p]) : albedo * diffuse[p] + frame.specular * highlights[p];
+        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p])
+                                      : albedo * diffuse[p] + frame.specular * highlights[p] +
+                                            rim_light(normals[p], positions[p]);
     }
     SurfelColour colour;
     colour.centre = lit[0];

@@ -139,12 +139,14 @@ struct Measured {
 
 std::string stem_of(const Measured& measured) {
     const std::uint32_t antialias = measured.frame.stats.antialias;
-    return measured.subject.name + (antialias > 1 ? fmt::format("-antialias-{}", antialias) : "");
+    const std::string shading = measured.frame.stats.shading == Shading::kDeferred ? "-deferred" : "";
+    return measured.subject.name + shading + (antialias > 1 ? fmt::format("-antialias-{}", antialias) : "");
 }
 
 std::vector<std::string> row_of(const Measured& measured) {
     const FrameStats& stats = measured.frame.stats;
     return {measured.subject.name,
+            std::string(name_of(stats.shading)),
             std::to_string(stats.antialias * stats.antialias),
             fmt::format("{:.2f}", measured.found.inside_db),
             fmt::format("{:.2f}", measured.found.frame_db),
@@ -157,6 +159,7 @@ std::vector<std::string> row_of(const Measured& measured) {
 nlohmann::json json_of(const Measured& measured) {
     const FrameStats& stats = measured.frame.stats;
     return {{"name", measured.subject.name},
+            {"shading", name_of(stats.shading)},
             {"antialias", stats.antialias},
             {"inside_db", number_or_null(measured.found.inside_db)},
             {"frame_db", number_or_null(measured.found.frame_db)},
@@ -180,6 +183,17 @@ CaptureSettings settings_of(const QualityCommand& command) {
     return settings;
 }
 
+std::vector<std::pair<Shading, std::uint32_t>> modes_of(const QualityCommand& command) {
+    std::vector<std::pair<Shading, std::uint32_t>> modes;
+    for (const std::string& name : command.shading) {
+        const auto shading = shading_of_name(name);
+        if (!shading) throw UsageError("--shading: expected surfel or deferred, got " + name);
+        for (const std::uint32_t antialias : command.antialias)
+            modes.emplace_back(*shading, antialias);
+    }
+    return modes;
+}
+
 std::vector<Picked> thesis_models(const fs::path& folder) {
     std::vector<Picked> all;
     for (const BenchModel& model : bench_models({}, folder))
@@ -201,6 +215,9 @@ CLI::App& add_quality_command(CLI::App& program, QualityCommand& command) {
         ->capture_default_str();
     app.add_option("--size", command.size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
     app.add_option("--backend", command.backend, "As splice-capture --backend")->capture_default_str();
+    app.add_option("--shading", command.shading, "surfel, deferred; a list: each in turn")
+        ->delimiter(',')
+        ->capture_default_str();
     app.add_option("--antialias", command.antialias, "Samples along each side of a pixel, 1 to 8; a list: each in turn")
         ->delimiter(',')
         ->check(CLI::Range(1U, kMostSamplesPerSide))
@@ -216,12 +233,13 @@ void run_quality_command(const QualityCommand& command) {
     CaptureSettings settings = settings_of(command);
     const std::vector<Picked> subjects =
         command.subjects.empty() ? thesis_models(command.folder) : picked(command.subjects);
+    const std::vector<std::pair<Shading, std::uint32_t>> modes = modes_of(command);
     if (!command.json.empty()) check_output_path(command.json);
     Renderer renderer({command.device, false});
     nlohmann::json report = {{"device", renderer.device_name()},
                              {"size", {settings.width, settings.height}},
                              {"pictures", nlohmann::json::array()}};
-    Table table({"PSNR, dB", "samples", "inside", "frame", "IoU", "holes", "surfels", "backend"});
+    Table table({"PSNR, dB", "shading", "samples", "inside", "frame", "IoU", "holes", "surfels", "backend"});
     for (const Picked& what : subjects) {
         show_progress(what.name);
         const Subject subject = what.disks > 0 ? sphere_subject(renderer, what, command.depth)
@@ -230,7 +248,8 @@ void run_quality_command(const QualityCommand& command) {
         const ReferenceScene oracle(subject.mesh);
         const Truth truth = truth_of(oracle, subject.mesh, subject.scene, subject.camera, settings.width,
                                      settings.height, subject.two_sided);
-        for (const std::uint32_t antialias : command.antialias) {
+        for (const auto& [shading, antialias] : modes) {
+            settings.shading = shading;
             settings.antialias = antialias;
             const Frame frame = renderer.render(subject.scene, settings);
             const Measured measured{subject, frame, compare(frame, truth), count_holes(frame, truth.coverage)};

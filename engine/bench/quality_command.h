@@ -19,6 +19,7 @@ struct QualityCommand {
     std::filesystem::path folder;       // of the thesis's models, when there are no subjects
     double depth = 2.418;               // of the bumpy sphere's disks: how many lie over a point
     std::string device = "auto", size = "512x512", backend = "sprite";
+    std::vector<std::string> shading = {"surfel"};
     std::vector<std::uint32_t> antialias = {1};  // samples along each side of a pixel, each in turn
     std::filesystem::path json, pictures;
 };

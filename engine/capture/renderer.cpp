@@ -91,7 +91,8 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
                               .camera = camera,
                               .view = view,
                               .epsilon_scale = settings.epsilon_scale,
-                              .prefilter = settings.prefilter};
+                              .prefilter = settings.prefilter,
+                              .shading = settings.shading};
     const DrawListOptions list_options{
         .sides = settings.sides,
         .draw_triangles =
@@ -128,6 +129,7 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
             stats->passes.push_back({timing.name, timing.gpu_ms});
         stats->backend = backend;
         stats->antialias = antialias;
+        stats->shading = settings.shading;
         stats->surfels_drawn = draws.surfels;
         stats->triangles_drawn = draws.triangles;
     }

@@ -43,8 +43,11 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
                                                                               : VK_FORMAT_R16G16B16A16_SFLOAT),
         .depth = image("depth", passes.formats.depth_stencil),
         .accumulation = image("accumulation", passes.formats.accumulation),
+        .normals = {},
         .picture = several ? image("samples", kSampleFormat) : image("picture", picture_format(settings.view)),
     };
+
+    if (is_deferred(settings)) targets.normals = image("normals", passes.formats.accumulation);
 
     passes.triangle.add(graph, targets, settings, draws);
     if (backend == Backend::kTile) {

@@ -30,6 +30,11 @@ bool is_numeric(View view) {
     return view == View::kDepth || view == View::kVisibility || view == View::kOverlap;
 }
 
+bool is_deferred(const FrameSettings& settings) {
+    return settings.shading == Shading::kDeferred && !is_numeric(settings.view) && settings.view != View::kNormals &&
+           settings.view != View::kAccumulation;
+}
+
 gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device) {
     const VkShaderStageFlags stages =
         VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
@@ -92,7 +97,7 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting, 
 }
 
 FrameVariant frame_variant(const FrameSettings& settings) {
-    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u};
+    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u, is_deferred(settings)};
 }
 
 std::map<std::uint32_t, std::uint32_t> frame_constants(const FrameSettings& settings) {

@@ -5,6 +5,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/shading.h"
 #include "engine/scene/view.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
@@ -24,7 +25,11 @@ struct FrameSettings {
     View view = View::kShaded;
     double epsilon_scale = 1;
     bool prefilter = true;
+    Shading shading = Shading::kSurfel;
 };
+
+/// Whether normals and albedos are blended and lit afterwards: only where the view shows light.
+bool is_deferred(const FrameSettings& settings);
 
 /// Views of numbers fill a float target, the others an 8-bit one.
 bool is_numeric(View view);
@@ -51,10 +56,11 @@ class FrameData {
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl.
+/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl, and the attachments.
 struct FrameVariant {
     std::uint32_t view;
     std::uint32_t orthographic;
+    bool deferred;
     auto operator<=>(const FrameVariant&) const = default;
 };
 FrameVariant frame_variant(const FrameSettings& settings);

@@ -1,5 +1,6 @@
 // Subpass 4: full screen; sums divided by weights where surfels own the pixel, triangles elsewhere (thesis 3.4.2,
-// normalization). Reads the other subpasses' results at its own pixel only.
+// normalization); with deferred shading, the mean normal and albedo are lit (Botsch et al. 2005). Reads the other
+// subpasses' results at its own pixel only.
 #pragma once
 
 #include "engine/passes/frame_data.h"
@@ -32,7 +33,7 @@ class SurfelNormalisePass {
     };
     void draw(const graph::PassContext& context, const FrameTargets& targets, const FrameSettings& settings,
               SurfelOwnership ownership);
-    VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets);
+    VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets, bool deferred);
     gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, SurfelOwnership ownership,
                                                   std::uint32_t owner) const;
 
@@ -40,7 +41,7 @@ class SurfelNormalisePass {
     const FrameData& data_;
     gpu::DescriptorSetLayout input_layout_;
     gpu::PipelineLayout layout_;
-    gpu::ShaderModule vertex_, fragment_;
+    gpu::ShaderModule vertex_, fragment_, deferred_fragment_;
     gpu::DescriptorPool pool_;
     Inputs inputs_;
     // By owner, and by whether samples are to be resolved.

@@ -200,7 +200,7 @@ Background read_background(const JsonValue& value) {
 }
 
 void read_render(const JsonValue& value, SceneDescription& scene) {
-    value.expect_members({"size", "view", "sides", "epsilon_scale", "prefilter", "antialias"});
+    value.expect_members({"size", "view", "sides", "epsilon_scale", "prefilter", "antialias", "shading"});
     constexpr std::uint32_t kLargestSide = 1u << 16;
     if (const auto size = value.member("size")) {
         size->array_size(2, 2);
@@ -220,6 +220,9 @@ void read_render(const JsonValue& value, SceneDescription& scene) {
     if (const auto epsilon = value.member("epsilon_scale"))
         scene.epsilon_scale = epsilon->number(0, 100, "a number from 0 to 100");
     if (const auto prefilter = value.member("prefilter")) scene.prefilter = prefilter->boolean();
+    if (const auto shading = value.member("shading"))
+        scene.shading = choice(*shading, std::array<std::pair<std::string_view, Shading>, 2>{
+                                             {{"surfel", Shading::kSurfel}, {"deferred", Shading::kDeferred}}});
     if (const auto antialias = value.member("antialias"))
         scene.antialias = antialias->whole_number(1, kMostSamplesPerSide);
 }

@@ -5,6 +5,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/shading.h"
 #include "engine/scene/view.h"
 
 #include <cstdint>
@@ -51,6 +52,7 @@ struct SceneDescription {
     double epsilon_scale = 1;
     bool prefilter = true;
     std::uint32_t antialias = 1;
+    Shading shading = Shading::kSurfel;
 };
 
 /// Throws InputError("FILE: /path/of/value: expected ..., got ..."), SystemError.

@@ -74,6 +74,12 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
          "scene.json: /lighting/rim: expected a number that is not negative, got -1"},
         {with(R"("lighting": {"rim_exponent": 0})"),
          "scene.json: /lighting/rim_exponent: expected a number from 1 to 1000000, got 0"},
+        {with(R"("render": {"shading": "cel"})"),
+         "scene.json: /render/shading: expected one of \"surfel\", \"deferred\", got \"cel\""},
+        {with(R"("render": {"antialias": 0})"),
+         "scene.json: /render/antialias: expected a whole number from 1 to 8, got 0"},
+        {with(R"("render": {"antialias": 9})"),
+         "scene.json: /render/antialias: expected a whole number from 1 to 8, got 9"},
         {with_model(R"("unit_box": 1)"), "scene.json: /models/0/unit_box: expected true or false, got 1"},
         {with_model(R"("representation": "points")"),
          "scene.json: /models/0/representation: expected one of \"hybrid\", \"triangles\", \"surfels\", got "
@@ -145,7 +151,8 @@ TEST_CASE("a scene that says everything is read as it says") {
             {"type": "point", "position": [1, 1, 1], "range": 2, "colour": "#ffffff", "intensity": 3},
             {"type": "directional", "direction": [0, -1, 0], "space": "camera", "colour": 0.5}]},
         "background": "#f80",
-        "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false}
+        "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false,
+                   "shading": "deferred", "antialias": 3}
     })",
                                                "scene.json", "folder");
     REQUIRE(scene.models.size() == 2);
@@ -179,6 +186,8 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK(scene.sides == Sides::kTwoSided);
     CHECK(scene.epsilon_scale == 1.5);
     CHECK_FALSE(scene.prefilter);
+    CHECK(scene.shading == Shading::kDeferred);
+    CHECK(scene.antialias == 3);
 }
 
 TEST_CASE("the scene format's example in the documentation is valid") {

@@ -5,6 +5,9 @@
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
 #include "preprocess/model_format/surfel_extent.h"
+#include "shaders/deferred_attribute_frag.h"
+#include "shaders/deferred_attribute_vert.h"
+#include "shaders/deferred_shade_frag.h"
 #include "shaders/resolve_frag.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
@@ -103,6 +106,9 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"surfel_visibility.frag", surfel_visibility_frag},
             {"surfel_normalise.frag", surfel_normalise_frag},
             {"resolve.frag", resolve_frag},
+            {"deferred_attribute.vert", deferred_attribute_vert},
+            {"deferred_attribute.frag", deferred_attribute_frag},
+            {"deferred_shade.frag", deferred_shade_frag},
             {"tile_setup.comp", tile_setup_comp},
             {"tile_gather.comp", tile_gather_comp},
             {"triangle.vert", triangle_vert},

@@ -71,6 +71,12 @@ vec3 normal_to_view_space(vec3 normal) {
                           dot(instance.model_to_view[2].xyz, normal)));
 }
 
+// The point of view space that shows at a window position.
+vec3 from_window(vec2 window, float depth) {
+    const vec2 q = (window - frame.viewport * 0.5) / frame.pixel_scale * (ORTHOGRAPHIC ? 1 : depth);
+    return vec3(q.x, -q.y, -depth);
+}
+
 // From a point of view space towards the eye, not normalised.
 vec3 towards_eye(vec3 position) { return ORTHOGRAPHIC ? vec3(0, 0, 1) : -position; }
 

@@ -5,6 +5,7 @@
 #include "engine/bench/bench_quality.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
+#include "engine/scene/scene_file.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
@@ -124,6 +125,11 @@ int run(int argc, char** argv) {
         ->capture_default_str();
     capture.add_option("--frames", capture_line.quality.frames, "Timed frames a model, 1 to 100000")
         ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    capture
+        .add_option("--antialias", capture_line.quality.antialias,
+                    "Samples along each side of a pixel, of the pictures and not of the times, 1 to 8")
+        ->check(CLI::Range(1U, kMostSamplesPerSide))
         ->capture_default_str();
     capture.add_flag_callback(
         "--no-prefilter", [&] { capture_line.quality.prefilter = false; }, "Splats without the screen-space filter");

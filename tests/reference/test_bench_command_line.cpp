@@ -78,6 +78,9 @@ TEST_CASE("splice-bench answers a wrong command line with one line and exit code
                                   "quality bumpy-sphere x",
                                   "quality bumpy-sphere 0",
                                   "quality --backend beige",
+                                  "quality --shading cel",
+                                  "quality --antialias 0",
+                                  "capture --antialias 9",
                                   "quality --depth 0"}) {
         INFO(arguments);
         const Outcome outcome = bench(arguments);
@@ -139,6 +142,24 @@ TEST_CASE("splice-bench quality measures meshes and scenes, and leaves pictures"
     CHECK(picture["holes"] == 0);
     for (const char* name : {"two.png", "two-reference.png", "two-error.png"})
         CHECK(std::filesystem::exists(folder / "pictures" / name));
+}
+
+TEST_CASE("a million disks of the bumpy sphere are as true as they have to be, with one sample a pixel and with more") {
+    const test::TemporaryFolder folder;
+    const Outcome outcome =
+        bench("quality bumpy-sphere 1000000 --antialias 1,3 --json '" + (folder / "report.json").string() + "'");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto pictures = nlohmann::json::parse(contents(folder / "report.json"))["pictures"];
+    REQUIRE(pictures.size() == 2);
+    for (const auto& picture : pictures) {
+        CAPTURE(picture["antialias"].get<int>());
+        CHECK(picture["inside_db"].get<double>() >= 57.1);
+        CHECK(picture["frame_db"].get<double>() >= 38.5);
+        CHECK(picture["iou"].get<double>() >= 0.999);
+        CHECK(picture["holes"] == 0);
+    }
+    CHECK(pictures[1]["frame_db"].get<double>() >= 50);
 }
 
 TEST_CASE("splice-bench quality cannot know what a baked model was made from") {

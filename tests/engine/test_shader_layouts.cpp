@@ -6,6 +6,10 @@
 #include "preprocess/model_format/model_format.h"
 #include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/model_format/surfel_extent.h"
+#include "shaders/deferred_attribute_frag.h"
+#include "shaders/deferred_attribute_vert.h"
+#include "shaders/deferred_shade_frag.h"
+#include "shaders/resolve_frag.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
 #include "shaders/surfel_normalise_frag.h"
@@ -102,6 +106,10 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"surfel_visibility.vert", surfel_visibility_vert},
             {"surfel_visibility.frag", surfel_visibility_frag},
             {"surfel_normalise.frag", surfel_normalise_frag},
+            {"resolve.frag", resolve_frag},
+            {"deferred_attribute.vert", deferred_attribute_vert},
+            {"deferred_attribute.frag", deferred_attribute_frag},
+            {"deferred_shade.frag", deferred_shade_frag},
             {"tile_setup.comp", tile_setup_comp},
             {"tile_gather.comp", tile_gather_comp},
             {"triangle.vert", triangle_vert},
@@ -134,7 +142,9 @@ TEST_CASE("frame uniforms have the layout that the shaders declare") {
          {MEMBER(FrameUniforms, projection), MEMBER(FrameUniforms, viewport), MEMBER(FrameUniforms, pixel_scale),
           MEMBER(FrameUniforms, near_plane), MEMBER(FrameUniforms, far_plane), MEMBER(FrameUniforms, prefilter),
           MEMBER(FrameUniforms, sample_share), MEMBER(FrameUniforms, sample_radius), MEMBER(FrameUniforms, ambient),
-          MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess)}});
+          MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess),
+          MEMBER(FrameUniforms, rim), MEMBER(FrameUniforms, rim_exponent), MEMBER(FrameUniforms, background),
+          MEMBER(FrameUniforms, phong), MEMBER(FrameUniforms, samples_per_side)}});
 }
 
 TEST_CASE("light records have the layout that the shaders declare") {

@@ -90,7 +90,26 @@ struct SurfelColour {
 const int LIT_POINTS = 5;
 const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0, 1), vec2(0, -1));
 
-// `side`: 1, or -1 where a two-sided surface is seen from behind. `uv`: on the disk, in radii.
+// 1, or -1 where a two-sided surface is seen from behind.
+float side_of(SurfelFrame surfel) { return dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1; }
+
+vec3 surfel_albedo(SurfelRecord record) { return view_albedo(decode_srgb(record.colour), record.patch_number, true); }
+
+// The shading normal, to first order: at the centre, where it is unit, and how it changes along both tangents, a radius.
+struct SurfelNormals {
+    vec3 centre, along_u, along_v;
+};
+
+SurfelNormals surfel_normals(SurfelRecord record, SurfelFrame surfel) {
+    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
+    const vec3 centre = surfel.normal + lean.x * surfel.s + lean.y * surfel.t;
+    const float scale = side_of(surfel) * inversesqrt(dot(centre, centre));
+    return SurfelNormals(scale * centre, scale * (turn.x * surfel.s + turn.y * surfel.t),
+                         scale * (turn.y * surfel.s + turn.z * surfel.t));
+}
+
+// `side`: side_of. `uv`: on the disk, in radii.
 vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
     const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
     const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
@@ -100,7 +119,7 @@ vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv
 
 // All points under one light before the next light: reading a light costs more than using it.
 SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
-    const float side = dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1;
+    const float side = side_of(surfel);
     vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
         normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);
@@ -118,9 +137,11 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
             }
         }
     }
-    const vec3 albedo = view_albedo(decode_srgb(record.colour), record.patch_number, true);
+    const vec3 albedo = surfel_albedo(record);
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
-        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p]) : albedo * diffuse[p] + frame.specular * highlights[p];
+        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p])
+                                      : albedo * diffuse[p] + frame.specular * highlights[p] +
+                                            rim_light(normals[p], positions[p]);
     }
     SurfelColour colour;
     colour.centre = lit[0];

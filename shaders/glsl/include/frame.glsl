@@ -43,6 +43,7 @@ layout(set = 0, binding = 1, std430) readonly buffer LightRecords {
 };
 
 const uint INSTANCE_TWO_SIDED = 1;
+const uint INSTANCE_FIRST_SEGMENT = 2;  // compute: nothing was gathered yet
 
 layout(push_constant, std430) uniform InstanceConstants {
     vec4 model_to_view[3];  // rows of the affine map from unit-box to view space: uniform scale, rotation, translation
@@ -52,8 +53,8 @@ layout(push_constant, std430) uniform InstanceConstants {
     uint first_patch;       // added to patch numbers, so that instances get different colours
     uint first_surfel;      // compute: of the bound surfels
     uint surfel_count;
-    uint first_splat;       // compute: where the first of them is recorded
-    uint padding;
+    uint first_group;       // compute: number of the first of their groups
+    uint first_word;        // compute: where in the cells' masks a segment begins
 } instance;
 
 vec3 to_view_space(vec3 position) {

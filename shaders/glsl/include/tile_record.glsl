@@ -1,68 +1,84 @@
-// A splat as the tile backend records it: what splat.glsl computes of it, in the units of the depth buffer, 96 bytes.
-// Needs frame.glsl, splat.glsl, surfel_frame.glsl, tile.glsl.
+// A splat as the tile backend records it: what splat.glsl computes of it, in the units of the depth buffer. Flat
+// splats, those of disks and not of solids, need all texels but the last. Needs frame.glsl, splat.glsl,
+// surfel_frame.glsl, tile.glsl.
+//   0  anchor, reach around it (halves), z
+//   1  plane_map
+//   2  g, push, rise (half) and the marks
+//   3  conic, weight and blue's change along v (halves)
+//   4  colour, its change along u, its change along v but for blue (halves)
+//   5  skew, climb, plane_offset
 #ifndef SPLICE_TILE_RECORD_GLSL
 #define SPLICE_TILE_RECORD_GLSL
 
-// Depth buffer values are encode_depth's, linear in the pixel along a plane:
-//   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
-//   orthographic  z = z_P + g'.d - h s
-struct TileRecord {
-    vec2 anchor, g;     // splat.glsl; orthographic: g in depth buffer values a pixel
-    vec4 plane_map;
-    vec2 plane_offset;  // zero, or unit: as two 16-bit snorm
-    float z;            // of the anchor
-    float push;         // epsilon; perspective: over the near plane; orthographic: in depth buffer values
-    bool speck;
-    vec2 skew;
-    float climb;        // perspective: change of h, orthographic: of z, a radius along the normal
-    vec2 swell;         // radii; as halves
-    float rise;         // the disk's depths as a share of the anchor's; orthographic: in depth buffer values; half
-    vec4 conic_weight;
-    vec3 colour, colour_u, colour_v;  // halves
-};
+// Marks: how far the solid reaches above and below, as format::Surfel stores it (5 bits each), and
+const uint MARK_SHIFT = 16;
+const uint MARK_SWELL = 0x3ff;
+const uint MARK_SPECK = 1 << 10;
+const uint MARK_NEAR = 1 << 11;  // crosses the near plane
 
-float depth_range() { return frame.far_plane - frame.near_plane; }
-
-TileSplat pack_splat(Splat splat, SurfelColour colour) {
-    const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
-    const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
-    const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
-    // Rounded up, so that nothing on the disk is beyond it.
-    const float rise = splat.rise * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth) * (1 + 1.0 / 512) + 1e-7;
-    TileSplat record;
-    record.words[0] = floatBitsToUint(vec4(splat.anchor, splat.g * to_z));
-    record.words[1] = floatBitsToUint(splat.plane_map);
-    record.words[2] = floatBitsToUint(
-        vec4(encode_depth(splat.anchor_depth), flagged(push, is_sub_pixel(splat)), splat.skew.xy));
-    record.words[3] = uvec4(packHalf2x16(splat.swell), packHalf2x16(vec2(colour.along_v.b, min(rise, 6e4))),
-                            packSnorm2x16(splat.plane_offset), floatBitsToUint(climb));
-    record.words[4] = floatBitsToUint(vec4(splat.conic, splat.weight));
-    record.words[5] = uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
-                            packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg));
-    return record;
+float depth_range() {
+    return frame.far_plane - frame.near_plane;
 }
 
-TileRecord unpack_splat(TileSplat packed) {
-    const vec4 depths = uintBitsToFloat(packed.words[2]);
-    const vec2 blue_rise = unpackHalf2x16(packed.words[3].y);
-    const vec2 blue_red = unpackHalf2x16(packed.words[5].y);
-    TileRecord record;
-    record.anchor = uintBitsToFloat(packed.words[0].xy);
-    record.g = uintBitsToFloat(packed.words[0].zw);
-    record.plane_map = uintBitsToFloat(packed.words[1]);
-    record.plane_offset = unpackSnorm2x16(packed.words[3].z);
-    record.z = depths.x;
-    record.push = abs(depths.y);
-    record.speck = depths.y < 0;
-    record.skew = depths.zw;
-    record.climb = uintBitsToFloat(packed.words[3].w);
-    record.swell = unpackHalf2x16(packed.words[3].x);
-    record.rise = blue_rise.y;
-    record.conic_weight = uintBitsToFloat(packed.words[4]);
-    record.colour = vec3(unpackHalf2x16(packed.words[5].x), blue_red.x);
-    record.colour_u = vec3(blue_red.y, unpackHalf2x16(packed.words[5].z));
-    record.colour_v = vec3(unpackHalf2x16(packed.words[5].w), blue_rise.x);
-    return record;
+struct SplatPlace {
+    vec2 anchor, reach;
+    float z;
+};
+
+SplatPlace unpack_place(uvec4 texel) {
+    return SplatPlace(uintBitsToFloat(texel.xy), unpackHalf2x16(texel.z), uintBitsToFloat(texel.w));
+}
+
+// `reach` is rounded up.
+uvec4 pack_place(vec2 anchor, vec2 reach, float z) {
+    return uvec4(floatBitsToUint(anchor), packHalf2x16(reach * (1 + 1.0 / 512) + 1.0 / 64), floatBitsToUint(z));
+}
+
+// Depth buffer values are encode_depth's, linear in the pixel along a plane:
+//   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
+//   orthographic  z = z_P + g'.d - h s,  g' = g in depth buffer values a pixel
+struct SplatPlane {
+    vec4 plane_map;
+    vec2 g;
+    float push;  // epsilon; perspective: over the near plane; orthographic: in depth buffer values
+    float rise;  // the disk's depths as a share of the anchor's; orthographic: in depth buffer values
+    uint marks;
+};
+
+SplatPlane unpack_plane(uvec4 map, uvec4 texel) {
+    return SplatPlane(uintBitsToFloat(map), uintBitsToFloat(texel.xy), uintBitsToFloat(texel.z),
+                      unpackHalf2x16(texel.w).x, texel.w >> MARK_SHIFT);
+}
+
+struct SplatSolid {
+    vec2 skew;
+    float climb;        // perspective: change of h, orthographic: of z, a radius along the normal
+    vec2 swell;         // radii
+    vec2 plane_offset;  // zero, or unit
+};
+
+SplatSolid unpack_solid(uvec4 texel, uint marks) {
+    const vec3 depths = uintBitsToFloat(texel.xyz);
+    const uvec2 steps = uvec2(marks & 31, marks >> 5 & 31);
+    const vec2 swell = mix(exp2(EXTENT_POWERS.xy * (vec2(steps) - EXTENT_ONES.xy)), vec2(0), equal(steps, uvec2(0)));
+    return SplatSolid(depths.xy, depths.z, swell, unpackSnorm2x16(texel.w));
+}
+
+struct SplatPaint {
+    vec3 conic;
+    float weight;
+    vec3 colour, colour_u, colour_v;
+};
+
+SplatPaint unpack_paint(uvec4 conic, uvec4 texel) {
+    const vec2 weight_blue = unpackHalf2x16(conic.w), blue_red = unpackHalf2x16(texel.y);
+    SplatPaint paint;
+    paint.conic = uintBitsToFloat(conic.xyz);
+    paint.weight = weight_blue.x;
+    paint.colour = vec3(unpackHalf2x16(texel.x), blue_red.x);
+    paint.colour_u = vec3(blue_red.y, unpackHalf2x16(texel.z));
+    paint.colour_v = vec3(unpackHalf2x16(texel.w), weight_blue.y);
+    return paint;
 }
 
 #endif

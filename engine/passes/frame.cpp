@@ -46,8 +46,9 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
 
     passes.triangle.add(graph, targets, settings, draws);
     if (backend == Backend::kTile) {
-        passes.tile.add(graph, bindings, targets, settings, draws);
-        passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kWeight);
+        passes.tile.add(graph, bindings, targets, settings, background, draws);
+        if (!TilePasses::composes(settings))
+            passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kWeight);
     } else {
         passes.surfel_visibility.add(graph, targets, settings, draws);
         passes.surfel_attribute.add(graph, targets, settings, draws);

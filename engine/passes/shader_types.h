@@ -32,7 +32,11 @@ struct LightRecord {
 };
 static_assert(sizeof(LightRecord) == 32);
 
-enum InstanceFlags : std::uint32_t { kInstanceTwoSided = 1u << 0, kInstanceFirstSegment = 1u << 1 };
+enum InstanceFlags : std::uint32_t {
+    kInstanceTwoSided = 1u << 0,
+    kInstanceFirstSegment = 1u << 1,
+    kInstanceLastSegment = 1u << 2,
+};
 
 struct InstanceConstants {
     glm::vec4 model_to_view[3];
@@ -53,7 +57,10 @@ struct TileUniforms {
     std::uint32_t cell_shift;
     std::uint32_t words;
     std::uint32_t segmented;
+    std::uint32_t first_solid;
+    std::uint32_t padding[2];
+    glm::vec4 background;
 };
-static_assert(sizeof(TileUniforms) == 20);
+static_assert(sizeof(TileUniforms) == 48);
 
 }  // namespace splice

@@ -8,8 +8,6 @@
 
 namespace splice {
 
-namespace {
-
 VkClearValue empty_picture(View view, const Background& background) {
     if (is_numeric(view)) {
         const float nothing = std::numeric_limits<float>::infinity();
@@ -18,8 +16,6 @@ VkClearValue empty_picture(View view, const Background& background) {
     const glm::vec3 colour(background.transparent ? glm::dvec3(0) : background.colour);
     return graph::clear_colour(colour.r, colour.g, colour.b, 0);
 }
-
-}  // namespace
 
 SurfelNormalisePass::SurfelNormalisePass(gpu::Device& device, const FrameData& data)
     : device_(device),

@@ -16,6 +16,9 @@ namespace splice {
 /// is a weight.
 enum class SurfelOwnership : std::uint32_t { kStencil, kWeight };
 
+/// What a picture holds where nothing is drawn.
+VkClearValue empty_picture(View view, const Background& background);
+
 class SurfelNormalisePass {
   public:
     SurfelNormalisePass(gpu::Device& device, const FrameData& data);

@@ -1,5 +1,7 @@
 #include "engine/passes/tile_buffers.h"
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -30,12 +32,13 @@ TileBuffers::TileBuffers(gpu::Device& device)
                          .name = "tile uniforms"}) {}
 
 std::uint64_t TileBuffers::most_groups(std::uint64_t most) const {
-    const std::uint64_t held = device_.limits().maxTexelBufferElements / (kTileGroup * kTileRecordTexels);
+    const std::uint64_t held = device_.limits().maxTexelBufferElements / (kTileGroup * (kTileRecordTexels + 1));
     const std::uint64_t all = std::clamp<std::uint64_t>(held, 1, kMostGroups);
     return most == 0 ? all : std::min(most, all);
 }
 
-void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented) {
+void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented,
+                          const VkClearValue& background) {
     groups = std::max<std::uint64_t>(groups, 1);
     const std::uint64_t words = divided_up(groups, 32);
     std::uint32_t shift = kSmallestCellShift;
@@ -47,12 +50,15 @@ void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t groups, b
                .cells_y = static_cast<std::uint32_t>(across(settings.height)),
                .cell_shift = shift,
                .words = static_cast<std::uint32_t>(words),
-               .segmented = segmented ? 1u : 0u};
+               .segmented = segmented ? 1u : 0u,
+               .first_solid = static_cast<std::uint32_t>(groups * kTileGroup * kTileRecordTexels),
+               .padding = {},
+               .background = glm::make_vec4(background.color.float32)};
     std::memcpy(uniforms_.mapped().data(), &values_, sizeof values_);
 
     constexpr VkBufferUsageFlags written = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
     constexpr VkBufferUsageFlags read = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-    if (grow(records_, "splat records", groups * kTileGroup * kTileRecordTexels * kTexelBytes, written | read))
+    if (grow(records_, "splat records", groups * kTileGroup * (kTileRecordTexels + 1) * kTexelBytes, written | read))
         record_view_ = gpu::create_texel_view(device_, records_, VK_FORMAT_R32G32B32A32_UINT);
     if (grow(blocks_, "splat blocks", groups * kBlocks * kBoundsBytes, written | read))
         block_view_ = gpu::create_texel_view(device_, blocks_, VK_FORMAT_R32G32_UINT);

@@ -15,7 +15,7 @@ namespace splice {
 
 /// Of tile.glsl, by the same names: pixels; surfels; splats; texels a splat; words of a mask; groups of a cell.
 inline constexpr std::uint32_t kTileWidth = 8, kTileHeight = 4;
-inline constexpr std::uint32_t kTileGroup = 64, kTileBlock = 8, kTileRecordTexels = 6;
+inline constexpr std::uint32_t kTileGroup = 64, kTileBlock = 8, kTileRecordTexels = 4;
 inline constexpr std::uint32_t kTileSegmentWords = 24, kTileFusedGroups = 416;
 /// local_size_x of tile_cells.comp.
 inline constexpr std::uint32_t kTileCellsGroup = 64;
@@ -32,7 +32,7 @@ class TileBuffers {
     /// Groups that one batch may have: what texel buffers hold, and at most `most` where that is not 0.
     std::uint64_t most_groups(std::uint64_t most) const;
     /// Makes room for batches of `groups`; no submitted work may still use the frame before.
-    void prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented);
+    void prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented, const VkClearValue& background);
     TileHandles import(graph::Graph& graph, graph::Bindings& bindings) const;
     /// Bindings 1 to 7 of tile.glsl and the uniforms.
     void write(gpu::DescriptorWriter& writer) const;

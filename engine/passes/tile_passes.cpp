@@ -1,5 +1,6 @@
 #include "engine/passes/tile_passes.h"
 
+#include "engine/passes/surfel_normalise_pass.h"
 #include "engine/scene/gpu_model.h"
 #include "shaders/tile_cells_comp.h"
 #include "shaders/tile_gather_comp.h"
@@ -70,7 +71,9 @@ TilePasses::TilePasses(gpu::Device& device, const FrameData& data, std::uint64_t
                             {7, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kCompute},
                             {8, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
                             {9, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
-                            {10, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute}}),
+                            {10, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                            {11, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
+                            {12, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute}}),
       layout_(device, std::array{data.layout().handle(), surfel_layout_.handle(), tile_layout_.handle()},
               sizeof(InstanceConstants), kCompute),
       setup_(device, tile_setup_comp, "tile_setup.comp"),
@@ -114,12 +117,13 @@ void TilePasses::plan(const DrawList& draws) {
 }
 
 void TilePasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
-                     const FrameSettings& settings, const DrawList& draws) {
+                     const FrameSettings& settings, const Background& background, const DrawList& draws) {
     plan(draws);
     const bool one_batch = batches_.size() == 1;
-    buffers_.prepare(settings, batches_.front().groups, !one_batch);
+    buffers_.prepare(settings, batches_.front().groups, !one_batch, empty_picture(settings.view, background));
     handles_ = buffers_.import(graph, bindings);
     targets_ = targets;
+    composes_ = composes(settings);
     segment_depth_ = graph.create_image(
         "tile_depth", {.format = VK_FORMAT_R32_SFLOAT, .width = settings.width, .height = settings.height});
     if (one_batch) {
@@ -127,14 +131,15 @@ void TilePasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTarget
         add_gather(graph, targets, settings);
         // No cell can hold too much for one go unless the frame does.
         if (batches_.front().groups > kTileFusedGroups)
-            add_segments(graph, targets, settings, {Stage::kSegmentVisibility, Stage::kSegmentAttributes}, true);
+            add_segments(graph, targets, settings, {Stage::kSegmentVisibility, Stage::kSegmentAttributes},
+                         {true, true});
         return;
     }
     // All visibility before all attributes: every batch is set up twice, so that one batch's room is enough.
     for (const Stage stage : {Stage::kSegmentVisibility, Stage::kSegmentAttributes})
         for (const Batch& batch : batches_) {
             add_batch(graph, settings, batch);
-            add_segments(graph, targets, settings, {stage}, &batch == &batches_.front());
+            add_segments(graph, targets, settings, {stage}, {&batch == &batches_.front(), &batch == &batches_.back()});
         }
 }
 
@@ -169,8 +174,10 @@ void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const Fr
     pass.storage_read(handles_.cells);
     pass.indirect_buffer(handles_.cells);
     pass.sampled(targets.depth);
+    pass.sampled(targets.triangle_colour);
     targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
     segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
+    if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
     pass.record([this, &settings](const graph::PassContext& context) {
         bind(context, Stage::kGather, settings);
         vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileFusedDispatch);
@@ -178,7 +185,7 @@ void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const Fr
 }
 
 void TilePasses::add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
-                              std::vector<Stage> stages, bool first) {
+                              std::vector<Stage> stages, Range range) {
     graph::Pass pass = graph.add_pass("tile_segments", graph::PassKind::compute);
     pass.storage_read(handles_.records);
     pass.storage_read(handles_.blocks);
@@ -186,17 +193,20 @@ void TilePasses::add_segments(graph::Graph& graph, FrameTargets& targets, const 
     pass.storage_read(handles_.cells);
     pass.indirect_buffer(handles_.cells);
     pass.sampled(targets.depth);
-    const bool fresh = first && buffers_.uniforms().segmented != 0 && stages.front() == Stage::kSegmentVisibility;
+    pass.sampled(targets.triangle_colour);
+    const bool fresh = range.first && buffers_.uniforms().segmented != 0 && stages.front() == Stage::kSegmentVisibility;
     if (fresh) {
         targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
         segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
+        if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
     } else {
         targets.accumulation = pass.storage_read_write(targets.accumulation);
         segment_depth_ = pass.storage_read_write(segment_depth_);
+        if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::keep());
     }
-    pass.record([this, &settings, stages = std::move(stages), first](const graph::PassContext& context) {
+    pass.record([this, &settings, stages = std::move(stages), range](const graph::PassContext& context) {
         for (const Stage stage : stages)
-            segment(context, settings, stage, first);
+            segment(context, settings, stage, range);
     });
 }
 
@@ -216,12 +226,14 @@ void TilePasses::setup(const graph::PassContext& context, const FrameSettings& s
     }
 }
 
-void TilePasses::segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, bool first) {
+void TilePasses::segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Range range) {
     bind(context, stage, settings);
     InstanceConstants constants{};
     for (std::uint32_t word = 0; word < buffers_.uniforms().words; word += kTileSegmentWords) {
         constants.first_word = word;
-        constants.flags = first && word == 0 ? kInstanceFirstSegment : 0u;
+        constants.flags =
+            (range.first && word == 0 ? kInstanceFirstSegment : 0u) |
+            (range.last && word + kTileSegmentWords >= buffers_.uniforms().words ? kInstanceLastSegment : 0u);
         vkCmdPushConstants(context.commands, layout_.handle(), kCompute, 0, sizeof constants, &constants);
         vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileSegmentedDispatch);
         wait_for_compute(context.commands);
@@ -252,6 +264,7 @@ void TilePasses::bind(const graph::PassContext& context, Stage stage, const Fram
     if (!pipeline) {
         std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
         constants[0] = program.part;
+        constants[3] = composes(settings) ? 1u : 0u;
         pipeline = gpu::ComputePipeline(device_, {&program.shader, constants}, layout_.handle(), program.name);
     }
     vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
@@ -273,6 +286,8 @@ VkDescriptorSet TilePasses::tile_set(const graph::PassContext& context) {
                        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
         .storage_image(9, context.view(targets_.accumulation))
         .storage_image(10, context.view(segment_depth_))
+        .sampled_image(11, context.view(targets_.triangle_colour), sampler_.get())
+        .storage_image(12, context.view(composes_ ? targets_.picture : targets_.accumulation))
         .write(device_);
     return sets_.set;
 }

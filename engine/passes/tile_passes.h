@@ -22,10 +22,12 @@ class TilePasses {
 
     /// Whether the backend can draw this frame: the device's abilities, and the view.
     bool can_draw(const FrameSettings& settings) const;
+    /// Whether add() makes the picture; if not, the normalise pass does. Pictures of numbers it leaves alone.
+    static bool composes(const FrameSettings& settings) { return !is_numeric(settings.view); }
     /// `draws` and `settings` must live until the graph has been executed. No submitted work may still use the frame
     /// before.
     void add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets, const FrameSettings& settings,
-             const DrawList& draws);
+             const Background& background, const DrawList& draws);
 
   private:
     enum class Stage : std::uint32_t { kSetup, kCells, kGather, kSegmentVisibility, kSegmentAttributes };
@@ -40,6 +42,10 @@ class TilePasses {
         std::vector<Job> jobs;
         std::uint64_t groups = 0;
     };
+    // Where a batch stands among all.
+    struct Range {
+        bool first, last;
+    };
     struct Sets {
         std::uint64_t plan_id = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
@@ -49,9 +55,9 @@ class TilePasses {
     void add_batch(graph::Graph& graph, const FrameSettings& settings, const Batch& batch);
     void add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
     void add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
-                      std::vector<Stage> stages, bool first);
+                      std::vector<Stage> stages, Range range);
     void setup(const graph::PassContext& context, const FrameSettings& settings, const Batch& batch);
-    void segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, bool first);
+    void segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Range range);
     void bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings);
     VkDescriptorSet tile_set(const graph::PassContext& context);
 
@@ -62,6 +68,7 @@ class TilePasses {
     TileBuffers buffers_;
     TileHandles handles_;
     FrameTargets targets_;
+    bool composes_ = false;
     graph::ImageHandle segment_depth_;
     std::vector<Batch> batches_;
     gpu::DescriptorSetLayout surfel_layout_, tile_layout_;

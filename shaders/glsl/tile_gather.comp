@@ -13,14 +13,15 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-#include "colour.glsl"
 #include "frame.glsl"
-#include "lighting.glsl"
 #include "octahedral.glsl"
+#include "colour.glsl"
+#include "lighting.glsl"
 #include "splat.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
 #include "tile_record.glsl"
+#include "compose.glsl"
 
 layout(local_size_x = 8) in;
 
@@ -30,29 +31,26 @@ const uint PART_ALL = 0;
 const uint PART_VISIBILITY = 1;
 const uint PART_ATTRIBUTES = 2;
 
+// Whether tiles become the picture; else sums, for the normalise pass.
+layout(constant_id = 3) const bool COMPOSE = false;
+
 layout(set = 2, binding = 4) uniform usamplerBuffer record_texels;
 layout(set = 2, binding = 6) uniform usamplerBuffer block_texels;
 layout(set = 2, binding = 7) uniform usamplerBuffer mask_texels;
 layout(set = 2, binding = 8) uniform sampler2D triangle_depth;
 layout(set = 2, binding = 9, rgba32f) uniform image2D accumulation;
 layout(set = 2, binding = 10, r32f) uniform image2D segment_depth;
+layout(set = 2, binding = 11) uniform sampler2D triangle_colour;
+layout(set = 2, binding = 12, rgba8) uniform writeonly image2D picture;
 
 const uint MOST_GROUPS = max(FUSED_GROUPS, 32 * SEGMENT_WORDS);
 // Blocks that touch the tile: those of flat splats from the front, the others from the back.
 shared uint touching[MOST_GROUPS * BLOCKS];
+const uint LAST_TOUCHING = MOST_GROUPS * BLOCKS - 1;
 
 struct Found {
     uint flat_blocks, solid_blocks;
 };
-
-void append(bool wanted, uint block, bool solid, inout Found found) {
-    const uvec4 flats = subgroupBallot(wanted && !solid), solids = subgroupBallot(wanted && solid);
-    const uint place = solid ? touching.length() - 1 - found.solid_blocks - subgroupBallotExclusiveBitCount(solids)
-                             : found.flat_blocks + subgroupBallotExclusiveBitCount(flats);
-    if (wanted) touching[place] = block;
-    found.flat_blocks += subgroupBallotBitCount(flats);
-    found.solid_blocks += subgroupBallotBitCount(solids);
-}
 
 Found find_blocks(uint cell, uint first_word, uint end_word, uvec2 corner) {
     const uint lane = gl_LocalInvocationID.x;
@@ -72,8 +70,16 @@ Found find_blocks(uint cell, uint first_word, uint end_word, uvec2 corner) {
                     bits &= bits - 1;
                     const uvec2 bounds = texelFetch(block_texels, int(block)).xy;
                     const uvec2 low = bounds & uvec2(0x7fff, 0xffff), high = bounds >> 16;
-                    append(all(lessThan(low, corner + TILE)) && all(greaterThan(high, corner)), block,
-                           (bounds.x & BLOCK_SOLID) != 0, found);
+                    const bool touches = all(lessThan(low, corner + TILE)) && all(greaterThan(high, corner));
+                // Of all blocks of the group alike.
+                const bool solid = (bounds.x & BLOCK_SOLID) != 0;
+                const uvec4 all_touching = subgroupBallot(touches);
+                const uint before = subgroupBallotExclusiveBitCount(all_touching);
+                if (touches)
+                    touching[solid ? LAST_TOUCHING - found.solid_blocks - before : found.flat_blocks + before] = block;
+                const uint count = subgroupBallotBitCount(all_touching);
+                found.solid_blocks += solid ? count : 0;
+                found.flat_blocks += solid ? 0 : count;
                 } while (bits != 0);
             } while (words_left != 0);
         word += gl_WorkGroupSize.x;
@@ -222,7 +228,8 @@ float smaller(float a, float b) {
 
 void see_block(uint block, const bool solids, inout Tile tile) {
     const uint lane = gl_LocalInvocationID.x;
-    const int texel = int((block * BLOCK + lane) * RECORD_TEXELS);
+    const uint splat_place = block * BLOCK + lane;
+    const int texel = int(splat_place * RECORD_TEXELS);
     const SplatPlace place = unpack_place(texelFetch(record_texels, texel));
     const SplatPlane splat = unpack_plane(texelFetch(record_texels, texel + 1), texelFetch(record_texels, texel + 2));
     const vec2 d = first_pixel(tile) - place.anchor;
@@ -230,7 +237,7 @@ void see_block(uint block, const bool solids, inout Tile tile) {
     TileSolid my_solid;
     int my_speck = -1;
     if (solids) {
-        const SplatSolid solid = unpack_solid(texelFetch(record_texels, texel + 5), splat.marks);
+        const SplatSolid solid = unpack_solid(texelFetch(record_texels, int(tiles.first_solid + splat_place)), splat.marks);
         const bool speck = (splat.marks & MARK_SPECK) != 0;
         my_solid = solid_in_tile(solid, speck);
         mine.u += solid.plane_offset.x * mine.e;
@@ -276,17 +283,19 @@ float falloff(float x) {
 
 void paint_block(uint block, const bool solids, inout Tile tile) {
     const uint lane = gl_LocalInvocationID.x;
-    const int texel = int((block * BLOCK + lane) * RECORD_TEXELS);
+    const uint splat_place = block * BLOCK + lane;
+    const int texel = int(splat_place * RECORD_TEXELS);
     const SplatPlace place = unpack_place(texelFetch(record_texels, texel));
     const SplatPlane splat = unpack_plane(texelFetch(record_texels, texel + 1), texelFetch(record_texels, texel + 2));
-    const SplatPaint paint = unpack_paint(texelFetch(record_texels, texel + 3), texelFetch(record_texels, texel + 4));
+    const SplatPaint paint = unpack_paint(splat, texelFetch(record_texels, texel + 3));
+    const SplatFilter filtered = filter_of(splat);
     const vec2 d = first_pixel(tile) - place.anchor;
     TilePlane mine = plane_in_tile(place.z, splat, d);
     TileSolid my_solid;
     const bool speck = solids && (splat.marks & MARK_SPECK) != 0;
     int my_speck = -1;
     if (solids) {
-        const SplatSolid solid = unpack_solid(texelFetch(record_texels, texel + 5), splat.marks);
+        const SplatSolid solid = unpack_solid(texelFetch(record_texels, int(tiles.first_solid + splat_place)), splat.marks);
         my_solid = solid_in_tile(solid, speck);
         mine.u += solid.plane_offset.x * mine.e;
         mine.v += solid.plane_offset.y * mine.e;
@@ -296,7 +305,7 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
     const float rise = speck ? 0 : splat.rise;
     const float nearest_z = ORTHOGRAPHIC ? place.z + rise : (rise < 1 ? place.z / (1 - rise) : 1e30);
     const float farthest_z = ORTHOGRAPHIC ? place.z - rise : place.z / (1 + rise);
-    const float my_weight = VIEW == VIEW_OVERLAP ? 1 : paint.weight;
+    const float my_weight = VIEW == VIEW_OVERLAP ? 1 : filtered.weight;
     const vec3 my_colour = paint.colour * my_weight;
     const float bend = speck ? 0 : my_weight;
     // Colours change along the disk, e times as fast.
@@ -304,7 +313,7 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
     const vec3 my_bend = bend_u * mine.u.x + bend_v * mine.v.x;
     const vec3 bend_column = bend_u * mine.u.y + bend_v * mine.v.y, bend_row = bend_u * mine.u.z + bend_v * mine.v.z;
     // The ellipse, x^T V^-1 x / 2, as a polynomial of the column and of the row.
-    const vec3 conic = paint.conic * vec3(0.5, 1, 0.5);
+    const vec3 conic = filtered.conic * vec3(0.5, 1, 0.5);
     const vec3 ellipse_column = vec3(conic.x * d.x * d.x + conic.y * d.x * d.y + conic.z * d.y * d.y,
                                      2 * conic.x * d.x + conic.y * d.y, conic.x);
     const vec3 ellipse_row = vec3(2 * conic.z * d.y + conic.y * d.x, conic.y, conic.z);
@@ -369,15 +378,18 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
         } while (left != 0);
 }
 
-void see(Found found, inout Tile tile) {
+void see(const bool solids, uint blocks, inout Tile tile) {
+    if (blocks == 0) return;
     uint n = 0;
-    if (n < found.flat_blocks) do
-            see_block(touching[n], false, tile);
-        while (++n < found.flat_blocks);
-    n = 0;
-    if (n < found.solid_blocks) do
-            see_block(touching[touching.length() - 1 - n], true, tile);
-        while (++n < found.solid_blocks);
+    do {
+        const uint own = min(n + gl_LocalInvocationID.x, blocks - 1);
+        const uint block = touching[solids ? LAST_TOUCHING - own : own];
+        const uint end = min(blocks - n, gl_WorkGroupSize.x);
+        uint i = 0;
+        do see_block(subgroupShuffle(block, i), solids, tile);
+        while (++i < end);
+        n += gl_WorkGroupSize.x;
+    } while (n < blocks);
 }
 
 void own(inout Tile tile) {
@@ -391,16 +403,18 @@ void own(inout Tile tile) {
     tile.farthest = subgroupMin(tile.farthest);
 }
 
-void paint(Found found, inout Tile tile) {
-    const bool any = tile.farthest <= 1;
+void paint(const bool solids, uint blocks, inout Tile tile) {
+    if (blocks == 0 || tile.farthest > 1) return;
     uint n = 0;
-    if (any && n < found.flat_blocks) do
-            paint_block(touching[n], false, tile);
-        while (++n < found.flat_blocks);
-    n = 0;
-    if (any && n < found.solid_blocks) do
-            paint_block(touching[touching.length() - 1 - n], true, tile);
-        while (++n < found.solid_blocks);
+    do {
+        const uint own = min(n + gl_LocalInvocationID.x, blocks - 1);
+        const uint block = touching[solids ? LAST_TOUCHING - own : own];
+        const uint end = min(blocks - n, gl_WorkGroupSize.x);
+        uint i = 0;
+        do paint_block(subgroupShuffle(block, i), solids, tile);
+        while (++i < end);
+        n += gl_WorkGroupSize.x;
+    } while (n < blocks);
 }
 
 void main() {
@@ -429,17 +443,28 @@ void main() {
     const uint end_word = PART == PART_ALL ? tiles.words : min(first_word + SEGMENT_WORDS, tiles.words);
     const Found found =
         find_blocks((place >> 16) * tiles.cells_x + (place & 0xffff), first_word, end_word, tile.corner);
-    if (PART != PART_ATTRIBUTES) see(found, tile);
+    if (PART != PART_ATTRIBUTES) {
+        see(false, found.flat_blocks, tile);
+        see(true, found.solid_blocks, tile);
+    }
     if (PART != PART_VISIBILITY) {
         own(tile);
-        paint(found, tile);
+        paint(false, found.flat_blocks, tile);
+        paint(true, found.solid_blocks, tile);
     }
+    const bool ends = PART == PART_ALL || (instance.flags & INSTANCE_LAST_SEGMENT) != 0;
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {
         const ivec2 pixel = first + ivec2(0, row);
         if (PART == PART_VISIBILITY) {
             imageStore(segment_depth, pixel, vec4(tile.visible[row]));
-        } else {
+        } else if (PART == PART_ATTRIBUTES || !COMPOSE) {
             imageStore(accumulation, pixel, tile.owned[row] ? tile.sum[row] : vec4(0));
+        }
+        if (COMPOSE && PART != PART_VISIBILITY) {
+            const vec4 triangles = texelFetch(triangle_colour, min(pixel, ivec2(frame.viewport) - 1), 0);
+            const bool surfels = tile.owned[row] && tile.sum[row].a > 0;
+            const vec4 colour = composed(triangles, surfels, tile.sum[row]);
+            if (ends) imageStore(picture, pixel, surfels || triangles.a > 0 ? colour : tiles.background);
         }
     }
 }

@@ -7,10 +7,11 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-#include "colour.glsl"
+#define COPY_UNIFORMS
 #include "frame.glsl"
-#include "lighting.glsl"
 #include "octahedral.glsl"
+#include "colour.glsl"
+#include "lighting.glsl"
 #include "splat.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
@@ -23,6 +24,8 @@ layout(set = 2, binding = 1, rgba32ui) uniform writeonly uimageBuffer records;
 layout(set = 2, binding = 2, rg32ui) uniform writeonly uimageBuffer block_bounds;
 
 shared uint remaining[GROUP];
+
+uint first_solid;  // of tiles
 
 SurfelRecord decode(uvec4 place, uvec4 look) {
     SurfelRecord record;
@@ -69,10 +72,10 @@ PixelBounds bounds_of(Splat splat, out vec2 reach) {
     return PixelBounds(uvec2(first), uvec2(beyond), false);
 }
 
-// What one invocation records at `place`; `surfel_index` only if it `takes_part`.
+// What one invocation records at `place`; a place without a splat reaches nothing.
 PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
     PixelBounds bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
-    bool shows = false;
+    uvec4 reaches = pack_place(vec2(0), vec2(-1e4), 0);
     const int texel = int(place * RECORD_TEXELS);
     if (takes_part) {
         const SurfelRecord record =
@@ -82,9 +85,9 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
         const bool drawn = surfel_splat(record, splat, surfel);
         vec2 reach;
         const PixelBounds own = bounds_of(splat, reach);
-        shows = drawn && all(lessThan(own.low, own.high));
-        if (shows) {
+        if (drawn && all(lessThan(own.low, own.high))) {
             bounds = own;
+            reaches = pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth));
             const SurfelColour colour = surfel_colour(record, surfel);
             const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
             const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
@@ -96,23 +99,19 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             marks |=
                 splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane ? MARK_NEAR : 0;
             bounds.solid = marks != 0;
-            imageStore(records, texel, pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth)));
             imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
             imageStore(records, texel + 2,
-                       uvec4(floatBitsToUint(vec3(splat.g * to_z, push)),
-                             packHalf2x16(vec2(min(rise, 6e4), 0)) | marks << MARK_SHIFT));
+                       uvec4(floatBitsToUint(splat.g * to_z), (floatBitsToUint(push) & ~MARKS) | marks,
+                             packHalf2x16(vec2(min(rise, 6e4), colour.along_v.b))));
             imageStore(records, texel + 3,
-                       uvec4(floatBitsToUint(splat.conic), packHalf2x16(vec2(splat.weight, colour.along_v.b))));
-            imageStore(records, texel + 4,
                        uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
                              packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
             if (marks != 0)
-                imageStore(records, texel + 5,
+                imageStore(records, int(first_solid + place),
                            uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
         }
     }
-    // A place without a splat reaches nothing.
-    if (!shows) imageStore(records, texel, pack_place(vec2(0), vec2(-1e4), 0));
+    imageStore(records, texel, reaches);
     return bounds;
 }
 
@@ -127,6 +126,8 @@ PixelBounds united(PixelBounds bounds) {
 }
 
 void main() {
+    copy_uniforms();
+    first_solid = tiles.first_solid;
     // A dispatch is at most 65,535 workgroups wide.
     const uint workgroup = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     const uint first = workgroup * GROUP;
@@ -149,22 +150,23 @@ void main() {
 
     PixelBounds group_bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
     uvec2 own_block = uvec2(0);  // of the block with the number of this invocation
+    bool solid = false;
     if (kept != 0) {
         uint block = 0;
         do {
             const uint i = block * BLOCK + lane;
             PixelBounds bounds =
                 record_surfel(i < kept, instance.first_surfel + remaining[min(i, kept - 1)], group * GROUP + i);
-            const bool solid = subgroupBallot(bounds.solid).x != 0;
+            solid = solid || subgroupBallot(bounds.solid).x != 0;
             bounds = united(bounds);
             group_bounds.low = min(group_bounds.low, bounds.low);
             group_bounds.high = max(group_bounds.high, bounds.high);
             if (block == lane && bounds.low.x < bounds.high.x)
-                own_block = (bounds.low | bounds.high << 16) | uvec2(solid ? BLOCK_SOLID : 0, 0);
+                own_block = bounds.low | bounds.high << 16;
             ++block;
         } while (block * BLOCK < kept);
     }
-    imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block, 0, 0));
+    imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block.x | (solid ? BLOCK_SOLID : 0), own_block.y, 0, 0));
 
     if (group_bounds.low.x >= group_bounds.high.x) return;
     const uvec2 first_cell = group_bounds.low >> tiles.cell_shift;

@@ -15,7 +15,7 @@
 const uvec2 TILE = uvec2(8, 4);  // pixels; a row is a vector of a CPU's device
 const uint GROUP = 64;           // surfels
 const uint BLOCK = 8;            // splats
-const uint RECORD_TEXELS = 6;    // tile_record.glsl
+const uint RECORD_TEXELS = 4;    // tile_record.glsl; solids have one more
 const uint SEGMENT_WORDS = 24;   // of a cell's mask
 const uint FUSED_GROUPS = 416;   // groups of a cell that is gathered at once
 const uint BLOCKS = GROUP / BLOCK;
@@ -25,6 +25,8 @@ layout(set = 2, binding = 0, std140) uniform TileUniforms {
     uint cell_shift;  // a cell is 1 << cell_shift pixels wide and high
     uint words;       // of a cell's mask, 32 groups each
     uint segmented;   // 1: no cell is gathered at once
+    uint first_solid;  // texel of the records
+    vec4 background;  // what the picture holds where nothing is
 }
 tiles;
 
@@ -41,7 +43,8 @@ uint cell_count() {
     return tiles.cells_x * tiles.cells_y;
 }
 
-// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x.
+// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, for all
+// blocks of a group that has a solid.
 const uint BLOCK_SOLID = 0x8000;
 
 #endif

@@ -3,15 +3,14 @@
 // surfel_frame.glsl, tile.glsl.
 //   0  anchor, reach around it (halves), z
 //   1  plane_map
-//   2  g, push, rise (half) and the marks
-//   3  conic, weight and blue's change along v (halves)
-//   4  colour, its change along u, its change along v but for blue (halves)
-//   5  skew, climb, plane_offset
+//   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
+//   3  colour, its change along u, its change along v but for blue (halves)
+//   4  skew, climb, plane_offset
 #ifndef SPLICE_TILE_RECORD_GLSL
 #define SPLICE_TILE_RECORD_GLSL
 
 // Marks: how far the solid reaches above and below, as format::Surfel stores it (5 bits each), and
-const uint MARK_SHIFT = 16;
+const uint MARKS = 0xfff;
 const uint MARK_SWELL = 0x3ff;
 const uint MARK_SPECK = 1 << 10;
 const uint MARK_NEAR = 1 << 11;  // crosses the near plane
@@ -42,12 +41,14 @@ struct SplatPlane {
     vec2 g;
     float push;  // epsilon; perspective: over the near plane; orthographic: in depth buffer values
     float rise;  // the disk's depths as a share of the anchor's; orthographic: in depth buffer values
+    float blue_v;
     uint marks;
 };
 
 SplatPlane unpack_plane(uvec4 map, uvec4 texel) {
-    return SplatPlane(uintBitsToFloat(map), uintBitsToFloat(texel.xy), uintBitsToFloat(texel.z),
-                      unpackHalf2x16(texel.w).x, texel.w >> MARK_SHIFT);
+    const vec2 rise_blue = unpackHalf2x16(texel.w);
+    return SplatPlane(uintBitsToFloat(map), uintBitsToFloat(texel.xy), uintBitsToFloat(texel.z & ~MARKS), rise_blue.x,
+                      rise_blue.y, texel.z & MARKS);
 }
 
 struct SplatSolid {
@@ -57,7 +58,9 @@ struct SplatSolid {
     vec2 plane_offset;  // zero, or unit
 };
 
+// Flat splats have no texel of this kind: anything may be there.
 SplatSolid unpack_solid(uvec4 texel, uint marks) {
+    if (marks == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0));
     const vec3 depths = uintBitsToFloat(texel.xyz);
     const uvec2 steps = uvec2(marks & 31, marks >> 5 & 31);
     const vec2 swell = mix(exp2(EXTENT_POWERS.xy * (vec2(steps) - EXTENT_ONES.xy)), vec2(0), equal(steps, uvec2(0)));
@@ -65,20 +68,37 @@ SplatSolid unpack_solid(uvec4 texel, uint marks) {
 }
 
 struct SplatPaint {
-    vec3 conic;
-    float weight;
     vec3 colour, colour_u, colour_v;
 };
 
-SplatPaint unpack_paint(uvec4 conic, uvec4 texel) {
-    const vec2 weight_blue = unpackHalf2x16(conic.w), blue_red = unpackHalf2x16(texel.y);
+SplatPaint unpack_paint(SplatPlane splat, uvec4 texel) {
+    const vec2 blue_red = unpackHalf2x16(texel.y);
     SplatPaint paint;
-    paint.conic = uintBitsToFloat(conic.xyz);
-    paint.weight = weight_blue.x;
     paint.colour = vec3(unpackHalf2x16(texel.x), blue_red.x);
     paint.colour_u = vec3(blue_red.y, unpackHalf2x16(texel.z));
-    paint.colour_v = vec3(unpackHalf2x16(texel.w), weight_blue.y);
+    paint.colour_v = vec3(unpackHalf2x16(texel.w), splat.blue_v);
     return paint;
+}
+
+struct SplatFilter {
+    vec3 conic;
+    float weight;
+};
+
+// What make_splat computes, from the inverse A of its J: V = J J^T / 2 + p I, J J^T = S^-1 with S = A^T A, and with
+// Q = |S| |V| both V^-1 = (S / 2 + p |S| I) / Q and |J| / (2 sqrt|V|) = 1 / (2 sqrt Q) need no division by |S|.
+SplatFilter filter_of(SplatPlane splat) {
+    if (frame.prefilter == 0) return SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
+    const vec4 a = splat.plane_map;
+    const vec3 s = vec3(dot(a.xy, a.xy), dot(a.xy, a.zw), dot(a.zw, a.zw));
+    const float area = a.x * a.w - a.y * a.z, determinant = area * area;
+    const float q = 0.25 + 0.5 * PREFILTER * (s.x + s.z) + PREFILTER * PREFILTER * determinant;
+    const bool near = (splat.marks & MARK_NEAR) != 0;
+    SplatFilter result;
+    result.conic = (0.5 * s + PREFILTER * determinant * vec3(1, 0, 1)) / q;
+    result.weight = max(0.5 * inversesqrt(q), MIN_WEIGHT);
+    if (near) result = SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
+    return result;
 }
 
 #endif

@@ -32,7 +32,7 @@ TileBuffers::TileBuffers(gpu::Device& device)
                          .name = "tile uniforms"}) {}
 
 std::uint64_t TileBuffers::most_groups(std::uint64_t most) const {
-    const std::uint64_t held = device_.limits().maxTexelBufferElements / (kTileGroup * (kTileRecordTexels + 1));
+    const std::uint64_t held = device_.limits().maxTexelBufferElements / (kTileGroup * (kTileRecordTexels + 2));
     const std::uint64_t all = std::clamp<std::uint64_t>(held, 1, kMostGroups);
     return most == 0 ? all : std::min(most, all);
 }
@@ -58,7 +58,7 @@ void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t groups, b
 
     constexpr VkBufferUsageFlags written = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
     constexpr VkBufferUsageFlags read = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-    if (grow(records_, "splat records", groups * kTileGroup * (kTileRecordTexels + 1) * kTexelBytes, written | read))
+    if (grow(records_, "splat records", groups * kTileGroup * (kTileRecordTexels + 2) * kTexelBytes, written | read))
         record_view_ = gpu::create_texel_view(device_, records_, VK_FORMAT_R32G32B32A32_UINT);
     if (grow(blocks_, "splat blocks", groups * kBlocks * kBoundsBytes, written | read))
         block_view_ = gpu::create_texel_view(device_, blocks_, VK_FORMAT_R32G32_UINT);

@@ -12,6 +12,7 @@ layout(location = 5) flat in vec3 in_colour_u;
 layout(location = 6) flat in vec3 in_colour_v;
 layout(location = 7) flat in vec3 in_skew;
 layout(location = 8) flat in vec2 in_swell;
+layout(location = 9) flat in vec4 in_clip;
 
 layout(location = 0) out vec4 out_sum;  // blended one to one: (w rgb, w)
 
@@ -19,13 +20,13 @@ void main() {
     const vec2 pixel = gl_FragCoord.xy;
     const float anchor_depth = in_colour_depth.w;
     const SplatHit hit = cast_ray(pixel, in_anchor_g.xy, in_plane_map, in_anchor_g.zw, anchor_depth, in_rise_offset.yz,
-                                  in_skew, in_swell, in_rise_offset.x < 0);
+                                  in_skew, in_swell, in_clip, in_rise_offset.x < 0);
     const vec2 d = pixel - in_anchor_g.xy;
     const vec3 conic = in_conic_weight.xyz;
     // x^T V^-1 x / 2. The affine ellipse holds the disk except where perspective bends it; there the disk itself takes
     // over, so that no pixel that the visibility pass wrote is left without a weight.
     float exponent = 0.5 * (conic.x * d.x * d.x + 2 * conic.y * d.x * d.y + conic.z * d.y * d.y);
-    if (!hit.on_disk && !hit.beside_disk && exponent >= 1) discard;
+    if (!hit.on_disk && !hit.beside_disk && (exponent >= 1 || hit.cut_off)) discard;
     exponent = min(min(exponent, hit.distance2), 1);
     // Tested against the pushed-back depth of the visibility pass. Beyond the disk its plane may be anywhere.
     const float rise = abs(in_rise_offset.x);

@@ -135,21 +135,29 @@ PixelPlane next_row(PixelPlane at, TilePlane plane) {
     return PixelPlane(at.e + plane.e.z, at.u + plane.u.z, at.v + plane.v.z, at.z + (ORTHOGRAPHIC ? plane.z_step.y : 0));
 }
 
+SplatSolid read_solid(uint place, uint marks) {
+    const int texel = int(tiles.first_solid + 2 * place);
+    return unpack_solid(texelFetch(record_texels, texel), texelFetch(record_texels, texel + 1).x, marks);
+}
+
 struct TileSolid {
+    vec3 past_clip;     // as TilePlane
+    float clip_change;  // perspective: less past_clip, over e
     vec2 skew;
     vec2 h;  // least and largest gain towards the axis
     float climb;
 };
 
-TileSolid solid_in_tile(SplatSolid solid, bool speck) {
+TileSolid solid_in_tile(SplatSolid solid, TilePlane plane, bool speck) {
     const vec2 ends = vec2(-solid.swell.y, solid.swell.x) * (ORTHOGRAPHIC ? 1 : solid.climb);
     // A speck shows at its own pixel and nowhere else.
     const vec2 h = speck ? vec2(0) : vec2(min(ends.x, ends.y), max(ends.x, ends.y));
-    return TileSolid(solid.skew, h, solid.climb);
+    return TileSolid(solid.clip.x * plane.u + solid.clip.y * plane.v - solid.clip.z * plane.e,
+                     dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew, h, solid.climb);
 }
 
 TileSolid hand_round(TileSolid mine, uint i) {
-    return TileSolid(subgroupShuffle(mine.skew, i), subgroupShuffle(mine.h, i), subgroupShuffle(mine.climb, i));
+    return TileSolid(subgroupShuffle(mine.past_clip, i), subgroupShuffle(mine.clip_change, i), subgroupShuffle(mine.skew, i), subgroupShuffle(mine.h, i), subgroupShuffle(mine.climb, i));
 }
 
 // cast_ray of splat.glsl without specks. `z`: perspective: the depth buffer value times `share`.
@@ -165,17 +173,26 @@ Meeting meet_disk(PixelPlane at) {
     return Meeting(distance2 <= at.e * at.e, false, ORTHOGRAPHIC ? at.z : at.z * at.e, 1, vec2(at.u, at.v), distance2);
 }
 
-Meeting meet_solid(PixelPlane at, TileSolid solid) {
+// `at_clip`: past_clip at the pixel.
+Meeting meet_solid(PixelPlane at, TileSolid solid, float at_clip) {
     Meeting meeting = meet_disk(at);
-    meeting.on_disk = meeting.on_disk && at.e > 0 && meeting.z <= 1;
+    // Beyond the plane's horizon e is below 0.
+    const float past_clip = at.e < 0 ? -at_clip : at_clip;
+    meeting.on_disk = meeting.on_disk && at.e > 0 && past_clip <= 0 && meeting.z <= 1;
     const vec2 q = ORTHOGRAPHIC ? solid.skew : vec2(at.u + solid.skew.x * at.e, at.v + solid.skew.y * at.e);
     const float uq = at.u * q.x + at.v * q.y;
     const float qq = q.x * q.x + q.y * q.y;
     // The part of the solid in front of the near plane: z / (1 + gain) or z - gain climb is at most 1 there.
     const float near_gain = ORTHOGRAPHIC ? (meeting.z - 1) / solid.climb : meeting.z - 1;
     const bool grows = ORTHOGRAPHIC ? solid.climb > 0 : at.e > 0;
-    const float low = grows ? max(solid.h.x, near_gain) : solid.h.x;
-    const float high = grows ? solid.h.y : min(solid.h.y, near_gain);
+    float low = grows ? max(solid.h.x, near_gain) : solid.h.x;
+    float high = grows ? solid.h.y : min(solid.h.y, near_gain);
+    // And on the side of the clip line that is kept.
+    const float clip_change = solid.clip_change * (ORTHOGRAPHIC ? 1 : abs(at.e)) + (ORTHOGRAPHIC ? 0 : past_clip);
+    const float clip_gain = -past_clip / clip_change;
+    high = clip_change > 0 ? min(high, clip_gain) : high;
+    low = clip_change < 0 ? max(low, clip_gain) : low;
+    high = clip_change == 0 && past_clip > 0 ? low - 1 : high;
     const float gain = clamp(-uq / max(qq, 1e-30), low, high);
     meeting.beside_disk =
         !meeting.on_disk && low <= high && meeting.distance2 + gain * (2 * uq + gain * qq) <= at.e * at.e;
@@ -237,11 +254,11 @@ void see_block(uint block, const bool solids, inout Tile tile) {
     TileSolid my_solid;
     int my_speck = -1;
     if (solids) {
-        const SplatSolid solid = unpack_solid(texelFetch(record_texels, int(tiles.first_solid + splat_place)), splat.marks);
+        const SplatSolid solid = read_solid(splat_place, splat.marks);
         const bool speck = (splat.marks & MARK_SPECK) != 0;
-        my_solid = solid_in_tile(solid, speck);
         mine.u += solid.plane_offset.x * mine.e;
         mine.v += solid.plane_offset.y * mine.e;
+        my_solid = solid_in_tile(solid, mine, speck);
         my_speck = speck_pixel_of(speck, place.anchor, tile.corner);
     }
     uint left = subgroupBallot(touches_tile(place, centre_of(tile))).x;
@@ -252,15 +269,18 @@ void see_block(uint block, const bool solids, inout Tile tile) {
             const float push = subgroupShuffle(splat.push, i);
             PixelPlane at = at_column(plane, float(lane));
             TileSolid solid;
+        float clip_at = 0;
             int speck_pixel;
             if (solids) {
                 solid = hand_round(my_solid, i);
-                speck_pixel = subgroupShuffle(my_speck, i);
+                clip_at = solid.past_clip.x + solid.past_clip.y * float(lane);
+            speck_pixel = subgroupShuffle(my_speck, i);
             }
             const float speck_z = subgroupShuffle(place.z, i);
             [[unroll]] for (int row = 0; row < TILE.y; ++row) {
                 if (solids) {
-                    const Meeting meeting = meet_solid(at, solid);
+                    const Meeting meeting = meet_solid(at, solid, clip_at);
+                clip_at += solid.past_clip.z;
                     const bool on_speck = !meeting.on_disk && speck_pixel == int(lane) + row * int(TILE.x);
                     const float away = push * tile.along_axis[row] * (meeting.beside_disk ? BESIDE_PUSH : 1);
                     const float back = pushed(on_speck ? speck_z : meeting.z, on_speck ? 1 : meeting.share, away);
@@ -295,10 +315,10 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
     const bool speck = solids && (splat.marks & MARK_SPECK) != 0;
     int my_speck = -1;
     if (solids) {
-        const SplatSolid solid = unpack_solid(texelFetch(record_texels, int(tiles.first_solid + splat_place)), splat.marks);
-        my_solid = solid_in_tile(solid, speck);
+        const SplatSolid solid = read_solid(splat_place, splat.marks);
         mine.u += solid.plane_offset.x * mine.e;
         mine.v += solid.plane_offset.y * mine.e;
+        my_solid = solid_in_tile(solid, mine, speck);
         my_speck = speck_pixel_of(speck, place.anchor, tile.corner);
     }
     // Beyond the disk its plane may be anywhere; a speck's is its centre's.
@@ -334,18 +354,20 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
             const vec3 bent_step = subgroupShuffle(bend_row, i);
             PixelPlane at = at_column(plane, column);
             TileSolid solid;
+        float clip_at = 0;
             vec3 cu, cv;
             int speck_pixel;
             if (solids) {
                 solid = hand_round(my_solid, i);
-                speck_pixel = subgroupShuffle(my_speck, i);
+                clip_at = solid.past_clip.x + solid.past_clip.y * float(lane);
+            speck_pixel = subgroupShuffle(my_speck, i);
                 cu = subgroupShuffle(bend_u, i);
                 cv = subgroupShuffle(bend_v, i);
             }
             [[unroll]] for (int row = 0; row < TILE.y; ++row) {
                 Meeting meeting;
                 if (solids) {
-                    meeting = meet_solid(at, solid);
+                    meeting = meet_solid(at, solid, clip_at);
                     bent = cu * meeting.nearest.x + cv * meeting.nearest.y;
                 } else {
                     meeting = meet_disk(at);
@@ -356,7 +378,12 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
                 const float exponent = smaller(meeting.on_disk ? meeting.distance2 * scale * scale : 1, ellipse);
                 const float met_z = ORTHOGRAPHIC || !solids ? meeting.z : meeting.z / meeting.share;
                 const float z = smaller(larger(met_z, z_ends.x), z_ends.y);
-                bool reached = meeting.on_disk || ellipse < 1;
+                bool cut_off = false;
+            if (solids) {
+                cut_off = clip_at > 0 && clip_at * clip_at > 0.25 * dot(solid.past_clip.yz, solid.past_clip.yz);
+                clip_at += solid.past_clip.z;
+            }
+            bool reached = meeting.on_disk || (ellipse < 1 && !cut_off);
                 if (solids) reached = reached || meeting.beside_disk || speck_pixel == int(lane) + row * int(TILE.x);
                 reached = reached && z >= tile.visible[row];
                 if (VIEW == VIEW_OVERLAP) {

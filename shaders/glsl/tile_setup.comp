@@ -36,7 +36,8 @@ SurfelRecord decode(uvec4 place, uvec4 look) {
     record.colour = unpackUnorm4x8(look.y).rgb;
     record.bend_0 = unpackSnorm4x8(look.y).w;
     record.bend_1_4 = unpackSnorm4x8(look.z);
-    record.patch_number = look.w;
+    record.patch_number = look.w & 0xffff;
+    record.clip = look.w >> 16;
     return record;
 }
 
@@ -98,6 +99,7 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             marks |= is_sub_pixel(splat) ? MARK_SPECK : 0;
             marks |=
                 splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane ? MARK_NEAR : 0;
+            marks |= VIEW != VIEW_SAMPLES && record.clip >> 6 != 0 ? MARK_CUT : 0;
             bounds.solid = marks != 0;
             imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
             imageStore(records, texel + 2,
@@ -106,9 +108,12 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             imageStore(records, texel + 3,
                        uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
                              packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
-            if (marks != 0)
-                imageStore(records, int(first_solid + place),
+            if (marks != 0) {
+                const int solid_texel = int(first_solid + 2 * place);
+                imageStore(records, solid_texel,
                            uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
+                imageStore(records, solid_texel + 1, uvec4(record.clip, 0, 0, 0));
+            }
         }
     }
     imageStore(records, texel, reaches);

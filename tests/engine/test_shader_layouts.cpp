@@ -4,6 +4,7 @@
 #include "engine/passes/tile_buffers.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/model_format/surfel_extent.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
@@ -171,6 +172,7 @@ TEST_CASE("surfels have the layout that tile_setup.comp reads as texels") {
         CHECK(words[i] == 4 * i);
     CHECK(sizeof(Surfel) == 4 * words.size());
     CHECK(offsetof(Surfel, extent) == offsetof(Surfel, radius) + 2);
+    CHECK(offsetof(Surfel, clip) == offsetof(Surfel, patch) + 2);
     CHECK(offsetof(Surfel, shading_bend) == offsetof(Surfel, colour) + 3);
 }
 
@@ -206,6 +208,8 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    CHECK(constant("include/surfel_frame.glsl", "CLIP_DIRECTIONS") == kClipDirections);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "CLIP_STEPS")) == kClipSteps);
     const double lean = constant("include/surfel_frame.glsl", "LARGEST_LEAN");
     const double turn = constant("include/surfel_frame.glsl", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));

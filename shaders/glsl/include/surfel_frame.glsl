@@ -13,6 +13,7 @@ struct SurfelRecord {
     vec4 bend_1_4;
     uint patch_number;
     uint extent;  // preprocess/model_format/surfel_extent.h
+    uint clip;    // preprocess/model_format/surfel_clip.h
 };
 
 // The same surfels whatever else is drawn with them.
@@ -35,6 +36,23 @@ struct SurfelFrame {
 const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
 const vec3 EXTENT_ONES = vec3(31, 31, 24);
 
+// Above, below, epsilon, in radii.
+vec3 decode_extent(uint bits) {
+    const uvec3 steps = uvec3(bits & 31, bits >> 5 & 31, bits >> 10);
+    return mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
+}
+
+// kClipDirections, kClipSteps
+const float CLIP_DIRECTIONS = 64;
+const float CLIP_STEPS = 1023;
+
+vec3 decode_clip(uint bits) {
+    const uint cut = bits >> 6;
+    if (cut == 0) return NO_CLIP;
+    const float turn = 6.283185307 / CLIP_DIRECTIONS * float(bits & 63);
+    return vec3(cos(turn), sin(turn), 1 - float(cut) / CLIP_STEPS);
+}
+
 // The splat of a surfel; false if it is not to be drawn.
 bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) {
     const vec3 centre = surfel.centre = to_view_space(record.position);
@@ -52,9 +70,9 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
         radius *= frame.sample_radius;
     }
     surfel.radius = radius;
-    const uvec3 steps = uvec3(record.extent & 31, record.extent >> 5 & 31, record.extent >> 10);
-    const vec3 shares = mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
+    const vec3 shares = decode_extent(record.extent);
     return make_splat(centre, normal, surfel.s, surfel.t, radius, VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      VIEW == VIEW_SAMPLES ? NO_CLIP : decode_clip(record.clip),
                       shares.z * baked_radius * instance.epsilon_scale, splat);
 }
 

@@ -1,19 +1,21 @@
 // A splat as the tile backend records it: what splat.glsl computes of it, in the units of the depth buffer. Flat
-// splats, those of disks and not of solids, need all texels but the last. Needs frame.glsl, splat.glsl,
+// splats, those of disks and not of solids, have the first four, a line of a
+// cache; those of solids and cut disks lie behind them all. Needs frame.glsl, splat.glsl,
 // surfel_frame.glsl, tile.glsl.
 //   0  anchor, reach around it (halves), z
 //   1  plane_map
 //   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
 //   3  colour, its change along u, its change along v but for blue (halves)
-//   4  skew, climb, plane_offset
+//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it
 #ifndef SPLICE_TILE_RECORD_GLSL
 #define SPLICE_TILE_RECORD_GLSL
 
 // Marks: how far the solid reaches above and below, as format::Surfel stores it (5 bits each), and
-const uint MARKS = 0xfff;
+const uint MARKS = 0x1fff;
 const uint MARK_SWELL = 0x3ff;
 const uint MARK_SPECK = 1 << 10;
 const uint MARK_NEAR = 1 << 11;  // crosses the near plane
+const uint MARK_CUT = 1 << 12;   // by a line
 
 float depth_range() {
     return frame.far_plane - frame.near_plane;
@@ -56,15 +58,15 @@ struct SplatSolid {
     float climb;        // perspective: change of h, orthographic: of z, a radius along the normal
     vec2 swell;         // radii
     vec2 plane_offset;  // zero, or unit
+    vec3 clip;          // decode_clip
 };
 
 // Flat splats have no texel of this kind: anything may be there.
-SplatSolid unpack_solid(uvec4 texel, uint marks) {
-    if (marks == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0));
+SplatSolid unpack_solid(uvec4 texel, uint clip, uint marks) {
+    if (marks == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
     const vec3 depths = uintBitsToFloat(texel.xyz);
-    const uvec2 steps = uvec2(marks & 31, marks >> 5 & 31);
-    const vec2 swell = mix(exp2(EXTENT_POWERS.xy * (vec2(steps) - EXTENT_ONES.xy)), vec2(0), equal(steps, uvec2(0)));
-    return SplatSolid(depths.xy, depths.z, swell, unpackSnorm2x16(texel.w));
+    return SplatSolid(depths.xy, depths.z, decode_extent(marks & MARK_SWELL).xy, unpackSnorm2x16(texel.w),
+                      decode_clip((marks & MARK_CUT) != 0 ? clip : 0));
 }
 
 struct SplatPaint {

@@ -28,6 +28,7 @@ namespace splice {
 struct RendererOptions {
     std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
     bool validate = false;        // validation and synchronisation-validation layers
+    std::uint64_t most_tile_groups = 0;  // groups of 64 surfels the tile backend works on at once; 0: all that fit
 };
 
 struct CaptureSettings {

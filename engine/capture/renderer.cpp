@@ -19,7 +19,7 @@ struct Renderer::Implementation {
         : instance({.validate = options.validate}),
           device(instance, {.choice = gpu::parse_device_choice(options.device)}),
           executor(device),
-          passes(device) {}
+          passes(device, options.most_tile_groups) {}
 
     std::vector<std::byte> render_raw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
                                       View view, FrameStats* stats);
@@ -105,20 +105,15 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
     passes.data.update(frame, scene.lighting, scene.background);
 
     reserve_pixels(kTexelBytes * settings.width * settings.height);
-    Backend backend = Backend::kAuto;
-    do {
-        backend = choose_backend(settings.backend, device, passes, frame, draws);
-        if (backend == Backend::kTile) passes.tile.prepare(frame, draws);
-        graph.clear();
-        graph::Bindings bindings;
-        const graph::BufferHandle destination =
-            graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
-        const graph::ImageHandle picture = add_frame(graph, bindings, passes, backend, frame, scene.background, draws);
-        add_read_back(graph, picture, destination, settings.width, settings.height);
-        bindings.bind(destination, pixels);
-        device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
-    } while (backend == Backend::kTile && !passes.tile.complete());
-    if (backend != Backend::kTile) passes.tile.forget();
+    const Backend backend = choose_backend(settings.backend, device, passes, frame);
+    graph.clear();
+    graph::Bindings bindings;
+    const graph::BufferHandle destination =
+        graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
+    const graph::ImageHandle picture = add_frame(graph, bindings, passes, backend, frame, scene.background, draws);
+    add_read_back(graph, picture, destination, settings.width, settings.height);
+    bindings.bind(destination, pixels);
+    device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
 
     const std::span<const std::byte> mapped = pixels.mapped();
     std::vector<std::byte> bytes(mapped.begin(), mapped.begin() + static_cast<std::ptrdiff_t>(pixels.size()));

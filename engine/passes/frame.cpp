@@ -11,13 +11,13 @@ FrameFormats::FrameFormats(const gpu::Device& device)
       accumulation(device.first_supported({VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT},
                                           VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT)) {}
 
-FramePasses::FramePasses(gpu::Device& device)
+FramePasses::FramePasses(gpu::Device& device, std::uint64_t most_tile_groups)
     : data(device),
       formats(device),
       triangle(device, data),
       surfel_visibility(device, data),
       surfel_attribute(device, data),
-      tile(device, data),
+      tile(device, data, most_tile_groups),
       surfel_normalise(device, data),
       resolve(device, data) {}
 
@@ -26,9 +26,9 @@ VkFormat picture_format(View view) {
 }
 
 Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
-                       const FrameSettings& settings, const DrawList& draws) {
+                       const FrameSettings& settings) {
     const bool tiles = wanted == Backend::kTile || (wanted == Backend::kAuto && device.info().is_cpu());
-    return tiles && passes.tile.can_draw(settings, draws) ? Backend::kTile : Backend::kSprite;
+    return tiles && passes.tile.can_draw(settings) ? Backend::kTile : Backend::kSprite;
 }
 
 graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes, Backend backend,
@@ -51,8 +51,9 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
 
     passes.triangle.add(graph, targets, settings, draws);
     if (backend == Backend::kTile) {
-        passes.tile.add(graph, bindings, targets, settings, draws);
-        passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kWeight);
+        passes.tile.add(graph, bindings, targets, settings, background, draws);
+        if (!TilePasses::composes(settings))
+            passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kWeight);
     } else {
         passes.surfel_visibility.add(graph, targets, settings, draws);
         passes.surfel_attribute.add(graph, targets, settings, draws);

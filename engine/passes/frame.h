@@ -25,7 +25,8 @@ struct FrameFormats {
 
 /// Shaders, layouts and pipelines of all passes of one device; made once.
 struct FramePasses {
-    explicit FramePasses(gpu::Device& device);
+    /// `most_tile_groups`: see TilePasses.
+    explicit FramePasses(gpu::Device& device, std::uint64_t most_tile_groups = 0);
 
     FrameData data;
     FrameFormats formats;
@@ -39,15 +40,15 @@ struct FramePasses {
 
 /// What draws a frame: what was asked for where it can, else sprites; kAuto: tiles on software devices. Never kAuto.
 Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
-                       const FrameSettings& settings, const DrawList& draws);
+                       const FrameSettings& settings);
 
 /// Format of the picture: 8-bit RGBA, sRGB-encoded by the shader, alpha coverage; or float for numeric views, where
 /// uncovered pixels keep +infinity.
 VkFormat picture_format(View view);
 
 /// Adds the passes of one frame to the graph, in order, and returns the picture. `draws`, `settings` and `passes` must
-/// live until the graph has been executed; passes.data must have been updated with the same settings, and passes.tile
-/// prepared if it is the `backend`. Binds what the passes keep from frame to frame.
+/// live until the graph has been executed; passes.data must have been updated with the same settings. Binds what the
+/// passes keep from frame to frame.
 graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes, Backend backend,
                              const FrameSettings& settings, const Background& background, const DrawList& draws);
 

@@ -37,7 +37,11 @@ struct LightRecord {
 };
 static_assert(sizeof(LightRecord) == 32);
 
-enum InstanceFlags : std::uint32_t { kInstanceTwoSided = 1u << 0 };
+enum InstanceFlags : std::uint32_t {
+    kInstanceTwoSided = 1u << 0,
+    kInstanceFirstSegment = 1u << 1,
+    kInstanceLastSegment = 1u << 2,
+};
 
 struct InstanceConstants {
     glm::vec4 model_to_view[3];
@@ -47,18 +51,21 @@ struct InstanceConstants {
     std::uint32_t first_patch;
     std::uint32_t first_surfel;
     std::uint32_t surfel_count;
-    std::uint32_t first_splat;
-    std::uint32_t padding;
+    std::uint32_t first_group;
+    std::uint32_t first_word;
 };
 static_assert(sizeof(InstanceConstants) == 80);
 
 struct TileUniforms {
-    std::uint32_t tiles_x;
-    std::uint32_t tiles_y;
-    std::uint32_t splats;
-    std::uint32_t chunks;
-    std::uint32_t capacity;
+    std::uint32_t cells_x;
+    std::uint32_t cells_y;
+    std::uint32_t cell_shift;
+    std::uint32_t words;
+    std::uint32_t segmented;
+    std::uint32_t first_solid;
+    std::uint32_t padding[2];
+    glm::vec4 background;
 };
-static_assert(sizeof(TileUniforms) == 20);
+static_assert(sizeof(TileUniforms) == 48);
 
 }  // namespace splice

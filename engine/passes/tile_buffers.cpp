@@ -1,29 +1,25 @@
 #include "engine/passes/tile_buffers.h"
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace splice {
 
 namespace {
 
-constexpr std::uint64_t kBoundsBytes = 8, kIndexBytes = 4;
-// Chunks are what orders the lists. Few make little work for the prefix sum, many make work for all of a device's
-// units.
-constexpr std::uint64_t kFewestChunks = 16, kMostChunks = 64, kChunkSplats = 4096;
+constexpr std::uint64_t kWordBytes = 4, kTexelBytes = 16, kBoundsBytes = 8;
+constexpr std::uint64_t kBlocks = kTileGroup / kTileBlock;
+// Cells as small as this keep what a tile must look at few; more masks than this are slow to clear.
+constexpr std::uint32_t kSmallestCellShift = 4, kLargestCellShift = 10;
+constexpr std::uint64_t kMostMaskBytes = std::uint64_t{1} << 24, kMostCells = std::uint64_t{1} << 15;
+// Scratch of 400 MiB; larger frames take turns.
+constexpr std::uint64_t kMostGroups = std::uint64_t{1} << 16;
 
-struct Sizes {
-    std::uint64_t tiles_x, tiles_y, chunks, largest;
-};
-
-Sizes sizes_of(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries) {
-    Sizes sizes{};
-    sizes.tiles_x = (settings.width + kTileWidth - 1) / kTileWidth;
-    sizes.tiles_y = (settings.height + kTileHeight - 1) / kTileHeight;
-    sizes.chunks = std::clamp(splats / kChunkSplats / 8 * 8, kFewestChunks, kMostChunks);
-    const std::uint64_t tiles = sizes.tiles_x * sizes.tiles_y;
-    sizes.largest = std::max({splats * kTileRecordBytes, tiles * sizes.chunks * kIndexBytes, entries * kIndexBytes});
-    return sizes;
+constexpr std::uint64_t divided_up(std::uint64_t value, std::uint64_t by) {
+    return (value + by - 1) / by;
 }
 
 }  // namespace
@@ -33,41 +29,49 @@ TileBuffers::TileBuffers(gpu::Device& device)
       uniforms_(device, {.size = sizeof(TileUniforms),
                          .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                          .memory = gpu::MemoryUse::upload,
-                         .name = "tile uniforms"}),
-      report_(device, {.size = kIndexBytes,
-                       .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                       .memory = gpu::MemoryUse::readback,
-                       .name = "tile report"}) {
-    forget();
+                         .name = "tile uniforms"}) {}
+
+std::uint64_t TileBuffers::most_groups(std::uint64_t most) const {
+    const std::uint64_t held = device_.limits().maxTexelBufferElements / (kTileGroup * (kTileRecordTexels + 2));
+    const std::uint64_t all = std::clamp<std::uint64_t>(held, 1, kMostGroups);
+    return most == 0 ? all : std::min(most, all);
 }
 
-bool TileBuffers::fits(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries) const {
-    return sizes_of(settings, splats, entries).largest <= device_.limits().maxStorageBufferRange;
-}
-
-void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries) {
-    const Sizes sizes = sizes_of(settings, splats, entries);
-    const std::uint64_t tiles = sizes.tiles_x * sizes.tiles_y;
-    grow(records_, "splat records", splats * kTileRecordBytes);
-    grow(bounds_, "splat bounds", splats * kBoundsBytes);
-    grow(counts_, "tile counts", tiles * sizes.chunks * kIndexBytes);
-    grow(starts_, "tile starts", (tiles + 1) * kIndexBytes);
-    grow(lists_, "tile lists", entries * kIndexBytes);
-    values_ = {.tiles_x = static_cast<std::uint32_t>(sizes.tiles_x),
-               .tiles_y = static_cast<std::uint32_t>(sizes.tiles_y),
-               .splats = static_cast<std::uint32_t>(splats),
-               .chunks = static_cast<std::uint32_t>(sizes.chunks),
-               .capacity = static_cast<std::uint32_t>(lists_.size() / kIndexBytes)};
+void TileBuffers::prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented,
+                          const VkClearValue& background) {
+    groups = std::max<std::uint64_t>(groups, 1);
+    const std::uint64_t words = divided_up(groups, 32);
+    std::uint32_t shift = kSmallestCellShift;
+    const auto across = [&](std::uint32_t pixels) { return divided_up(pixels, std::uint64_t{1} << shift); };
+    const auto cells = [&] { return across(settings.width) * across(settings.height); };
+    while (shift < kLargestCellShift && (cells() > kMostCells || cells() * words * kWordBytes > kMostMaskBytes))
+        ++shift;
+    values_ = {.cells_x = static_cast<std::uint32_t>(across(settings.width)),
+               .cells_y = static_cast<std::uint32_t>(across(settings.height)),
+               .cell_shift = shift,
+               .words = static_cast<std::uint32_t>(words),
+               .segmented = segmented ? 1u : 0u,
+               .first_solid = static_cast<std::uint32_t>(groups * kTileGroup * kTileRecordTexels),
+               .padding = {},
+               .background = glm::make_vec4(background.color.float32)};
     std::memcpy(uniforms_.mapped().data(), &values_, sizeof values_);
+
+    constexpr VkBufferUsageFlags written = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+    constexpr VkBufferUsageFlags read = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+    if (grow(records_, "splat records", groups * kTileGroup * (kTileRecordTexels + 2) * kTexelBytes, written | read))
+        record_view_ = gpu::create_texel_view(device_, records_, VK_FORMAT_R32G32B32A32_UINT);
+    if (grow(blocks_, "splat blocks", groups * kBlocks * kBoundsBytes, written | read))
+        block_view_ = gpu::create_texel_view(device_, blocks_, VK_FORMAT_R32G32_UINT);
+    if (grow(masks_, "tile masks", cells() * words * kWordBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | read))
+        mask_view_ = gpu::create_texel_view(device_, masks_, VK_FORMAT_R32_UINT);
+    grow(cells_, "tile cells", kTileCellList + 2 * cells() * kWordBytes,
+         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }
 
-void TileBuffers::grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes) {
-    if (buffer && buffer.size() >= bytes) return;
-    // Some more than is needed, so that a model that turns does not make new ones every frame.
-    const std::uint64_t ample = std::min<std::uint64_t>(bytes + bytes / 4, device_.limits().maxStorageBufferRange);
-    buffer = gpu::Buffer(device_, {.size = std::max<std::uint64_t>(ample / kTileRecordBytes * kTileRecordBytes, bytes),
-                                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                   .name = name});
+bool TileBuffers::grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage) {
+    if (buffer && buffer.size() >= bytes) return false;
+    buffer = gpu::Buffer(device_, {.size = bytes, .usage = usage, .name = name});
+    return true;
 }
 
 TileHandles TileBuffers::import(graph::Graph& graph, graph::Bindings& bindings) const {
@@ -76,30 +80,32 @@ TileHandles TileBuffers::import(graph::Graph& graph, graph::Bindings& bindings) 
         bindings.bind(handle, buffer);
         return handle;
     };
-    TileHandles handles{
-        .records = scratch("splat_records", records_),
-        .bounds = scratch("splat_bounds", bounds_),
-        .counts = scratch("tile_counts", counts_),
-        .starts = scratch("tile_starts", starts_),
-        .lists = scratch("tile_lists", lists_),
-        .report = graph.import_buffer("tile_report", {report_.size()}, {.after = graph::external::host_read()})};
-    bindings.bind(handles.report, report_);
-    return handles;
+    return {.records = scratch("splat_records", records_),
+            .blocks = scratch("splat_blocks", blocks_),
+            .masks = scratch("tile_masks", masks_),
+            .cells = scratch("tile_cells", cells_)};
 }
 
-std::uint64_t TileBuffers::count_bytes() const {
-    return std::uint64_t{values_.tiles_x} * values_.tiles_y * values_.chunks * kIndexBytes;
+void TileBuffers::write(gpu::DescriptorWriter& writer) const {
+    writer.uniform_buffer(0, uniforms_.handle())
+        .storage_texels(1, record_view_.get())
+        .storage_texels(2, block_view_.get())
+        .storage_buffer(3, masks_.handle())
+        .sampled_texels(4, record_view_.get())
+        .storage_buffer(5, cells_.handle())
+        .sampled_texels(6, block_view_.get())
+        .sampled_texels(7, mask_view_.get());
 }
 
-std::uint64_t TileBuffers::entries_needed() const {
-    std::uint32_t needed = 0;
-    std::memcpy(&needed, report_.mapped().data(), sizeof needed);
-    return needed;
-}
-
-void TileBuffers::forget() {
-    const std::uint32_t none = 0;
-    std::memcpy(report_.mapped().data(), &none, sizeof none);
+void TileBuffers::clear(VkCommandBuffer commands) const {
+    const std::uint64_t tiles =
+        (std::uint64_t{1} << 2 * values_.cell_shift) / (std::uint64_t{kTileWidth} * kTileHeight);
+    const std::array<std::uint32_t, 8> dispatches{static_cast<std::uint32_t>(tiles), 0, 1, 0,
+                                                  static_cast<std::uint32_t>(tiles), 0, 1, 0};
+    static_assert(sizeof dispatches == kTileCellList);
+    vkCmdFillBuffer(commands, masks_.handle(), 0, std::uint64_t{cells()} * values_.words * kWordBytes, 0);
+    vkCmdUpdateBuffer(commands, cells_.handle(), 0, sizeof dispatches, dispatches.data());
+    vkCmdFillBuffer(commands, cells_.handle(), kTileCellList, std::uint64_t{cells()} * kWordBytes, 0);
 }
 
 }  // namespace splice

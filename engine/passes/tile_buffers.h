@@ -7,50 +7,52 @@
 #include "engine/render_graph/executor/executor.h"
 #include "engine/render_graph/graph.h"
 #include "engine/vulkan/buffer.h"
+#include "engine/vulkan/descriptor.h"
 
 #include <cstdint>
 
 namespace splice {
 
-/// Pixels; TILE of tile.glsl.
+/// Of tile.glsl, by the same names: pixels; surfels; splats; texels a splat; words of a mask; groups of a cell.
 inline constexpr std::uint32_t kTileWidth = 8, kTileHeight = 4;
-/// Bytes of TileSplat of tile.glsl.
-inline constexpr std::uint64_t kTileRecordBytes = 96;
-/// What a workgroup takes: surfels of tile_setup.comp (SHARE); chunks of tile_count.comp and tile_list.comp, tiles of
-/// tile_scan.comp (local_size_x).
-inline constexpr std::uint32_t kSetupShare = 64, kChunkGroup = 8, kScanGroup = 64;
+inline constexpr std::uint32_t kTileGroup = 64, kTileBlock = 8, kTileRecordTexels = 4;
+inline constexpr std::uint32_t kTileSegmentWords = 24, kTileFusedGroups = 416;
+/// local_size_x of tile_cells.comp.
+inline constexpr std::uint32_t kTileCellsGroup = 64;
 
 /// The buffers of one frame as its graph knows them.
 struct TileHandles {
-    graph::BufferHandle records, bounds, counts, starts, lists, report;
+    graph::BufferHandle records, blocks, masks, cells;
 };
 
 class TileBuffers {
   public:
     explicit TileBuffers(gpu::Device& device);
 
-    /// Whether a frame of so many splats fits the device's limits at all.
-    bool fits(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries) const;
-    /// Makes room for a frame; no submitted work may still use the one before.
-    void prepare(const FrameSettings& settings, std::uint64_t splats, std::uint64_t entries);
+    /// Groups that one batch may have: what texel buffers hold, and at most `most` where that is not 0.
+    std::uint64_t most_groups(std::uint64_t most) const;
+    /// Makes room for batches of `groups`; no submitted work may still use the frame before.
+    void prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented, const VkClearValue& background);
     TileHandles import(graph::Graph& graph, graph::Bindings& bindings) const;
+    /// Bindings 1 to 7 of tile.glsl and the uniforms.
+    void write(gpu::DescriptorWriter& writer) const;
+    /// Empties masks and cells.
+    void clear(VkCommandBuffer commands) const;
 
     const TileUniforms& uniforms() const { return values_; }
-    const gpu::Buffer& uniform_buffer() const { return uniforms_; }
-    /// Bytes of the counts that the frame uses.
-    std::uint64_t count_bytes() const;
-    /// List entries that the last frame needed; more than it had room for: it is not complete.
-    std::uint64_t entries_needed() const;
-    /// As if there had been no frame before.
-    void forget();
-    std::uint64_t capacity() const { return values_.capacity; }
+    std::uint32_t cells() const { return values_.cells_x * values_.cells_y; }
+    const gpu::Buffer& cell_buffer() const { return cells_; }
 
   private:
-    void grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes);
+    bool grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage);
 
     gpu::Device& device_;
-    gpu::Buffer uniforms_, records_, bounds_, counts_, starts_, lists_, report_;
+    gpu::Buffer uniforms_, records_, blocks_, masks_, cells_;
+    gpu::UniqueBufferView record_view_, block_view_, mask_view_;
     TileUniforms values_{};
 };
+
+/// Offsets in bytes into the cell buffer.
+inline constexpr std::uint64_t kTileFusedDispatch = 0, kTileSegmentedDispatch = 16, kTileCellList = 32;
 
 }  // namespace splice

@@ -1,36 +1,23 @@
 #include "engine/passes/tile_passes.h"
 
+#include "engine/passes/surfel_normalise_pass.h"
 #include "engine/scene/gpu_model.h"
-#include "shaders/tile_count_comp.h"
+#include "shaders/tile_cells_comp.h"
 #include "shaders/tile_gather_comp.h"
-#include "shaders/tile_list_comp.h"
-#include "shaders/tile_scan_comp.h"
 #include "shaders/tile_setup_comp.h"
-#include "shaders/tile_starts_comp.h"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace splice {
 
 namespace {
 
 constexpr VkShaderStageFlags kCompute = VK_SHADER_STAGE_COMPUTE_BIT;
-constexpr std::uint32_t kWidestDispatch = 65535;  // workgroups, of every device
+constexpr std::uint64_t kWidestDispatch = 65535;  // workgroups, of every device
 
-enum TileBinding : std::uint32_t {
-    kUniforms,
-    kRecords,
-    kBounds,
-    kCounts,
-    kStarts,
-    kLists,
-    kDepth,
-    kAccumulation,
-    kReport
-};
-
-constexpr std::uint32_t groups(std::uint64_t invocations, std::uint32_t size) {
+constexpr std::uint32_t groups(std::uint64_t invocations, std::uint64_t size) {
     return static_cast<std::uint32_t>((invocations + size - 1) / size);
 }
 
@@ -56,158 +43,230 @@ bool supports_tiles(const gpu::Device& device) {
            depth != VK_FORMAT_UNDEFINED;
 }
 
+void wait_for_compute(VkCommandBuffer commands) {
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1,
+                         &barrier, 0, nullptr, 0, nullptr);
+}
+
 }  // namespace
 
-TilePasses::TilePasses(gpu::Device& device, const FrameData& data)
+TilePasses::TilePasses(gpu::Device& device, const FrameData& data, std::uint64_t most_groups)
     : device_(device),
       data_(data),
+      most_groups_(most_groups),
       supported_(supports_tiles(device)),
       buffers_(device),
       surfel_layout_(surfel_set_layout(device)),
-      tile_layout_(device, {{kUniforms, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kCompute},
-                            {kRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
-                            {kBounds, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
-                            {kCounts, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
-                            {kStarts, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
-                            {kLists, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
-                            {kDepth, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
-                            {kAccumulation, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
-                            {kReport, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute}}),
+      tile_layout_(device, {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kCompute},
+                            {1, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, kCompute},
+                            {2, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, kCompute},
+                            {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
+                            {4, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kCompute},
+                            {5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute},
+                            {6, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kCompute},
+                            {7, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kCompute},
+                            {8, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
+                            {9, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                            {10, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                            {11, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
+                            {12, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute}}),
       layout_(device, std::array{data.layout().handle(), surfel_layout_.handle(), tile_layout_.handle()},
               sizeof(InstanceConstants), kCompute),
       setup_(device, tile_setup_comp, "tile_setup.comp"),
-      count_(device, tile_count_comp, "tile_count.comp"),
-      scan_(device, tile_scan_comp, "tile_scan.comp"),
-      starts_(device, tile_starts_comp, "tile_starts.comp"),
-      list_(device, tile_list_comp, "tile_list.comp"),
+      cells_(device, tile_cells_comp, "tile_cells.comp"),
       gather_(device, tile_gather_comp, "tile_gather.comp"),
       sampler_(gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST,
                                             .mipmap_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
                                             .address_mode = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE})),
       pool_(device) {}
 
-std::uint64_t TilePasses::entries_for(const DrawList& draws) const {
-    // What the last frame needed is a good guess; of the first one nothing is known.
-    return std::max<std::uint64_t>(2 * draws.surfels, buffers_.entries_needed());
-}
-
-bool TilePasses::can_draw(const FrameSettings& settings, const DrawList& draws) const {
+bool TilePasses::can_draw(const FrameSettings& settings) const {
     // The visibility view shows the depth buffer, which this backend does not write.
-    return supported_ && settings.view != View::kVisibility && !is_deferred(settings) &&
-           buffers_.fits(settings, draws.surfels, entries_for(draws));
+    return supported_ && settings.view != View::kVisibility && !is_deferred(settings);
 }
 
-void TilePasses::prepare(const FrameSettings& settings, const DrawList& draws) {
-    buffers_.prepare(settings, draws.surfels, entries_for(draws));
-}
-
-void TilePasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
-                     const FrameSettings& settings, const DrawList& draws) {
-    TileHandles handles = handles_ = buffers_.import(graph, bindings);
-    targets_ = targets;
-    add_setup(graph, handles, settings, draws);
-    add_lists(graph, handles, settings);
-    graph::Pass pass = graph.add_pass("tile_gather", graph::PassKind::compute);
-    pass.storage_read(handles.records);
-    pass.storage_read(handles.starts);
-    pass.storage_read(handles.lists);
-    pass.sampled(targets.depth);
-    targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
-    pass.record([this, &settings](const graph::PassContext& context) {
-        bind(context, gather_, "tile_gather", settings);
-        vkCmdDispatch(context.commands, buffers_.uniforms().tiles_x, buffers_.uniforms().tiles_y, 1);
-    });
-}
-
-void TilePasses::add_setup(graph::Graph& graph, TileHandles& handles, const FrameSettings& settings,
-                           const DrawList& draws) {
-    graph::Pass pass = graph.add_pass("tile_setup", graph::PassKind::compute);
-    handles.records = pass.storage_write(handles.records, graph::Contents::discard());
-    handles.bounds = pass.storage_write(handles.bounds, graph::Contents::discard());
-    pass.record([this, &settings, &draws](const graph::PassContext& context) { setup(context, settings, draws); });
-}
-
-void TilePasses::add_lists(graph::Graph& graph, TileHandles& handles, const FrameSettings& settings) {
-    {
-        graph::Pass pass = graph.add_pass("tile_clear", graph::PassKind::transfer);
-        handles.counts = pass.transfer_write(handles.counts, graph::Contents::discard());
-        pass.record([this](const graph::PassContext& context) {
-            vkCmdFillBuffer(context.commands, context.buffer(handles_.counts), 0, buffers_.count_bytes(), 0);
-        });
-    }
-    const std::uint32_t chunks = buffers_.uniforms().chunks;
-    const std::uint64_t tiles = std::uint64_t{buffers_.uniforms().tiles_x} * buffers_.uniforms().tiles_y;
-    {
-        graph::Pass pass = graph.add_pass("tile_count", graph::PassKind::compute);
-        pass.storage_read(handles.bounds);
-        handles.counts = pass.storage_read_write(handles.counts);
-        pass.record([this, &settings, chunks](const graph::PassContext& context) {
-            bind(context, count_, "tile_count", settings);
-            vkCmdDispatch(context.commands, groups(chunks, kChunkGroup), 1, 1);
-        });
-    }
-    {
-        graph::Pass pass = graph.add_pass("tile_scan", graph::PassKind::compute);
-        handles.counts = pass.storage_read_write(handles.counts);
-        handles.starts = pass.storage_write(handles.starts, graph::Contents::discard());
-        pass.record([this, &settings, tiles](const graph::PassContext& context) {
-            bind(context, scan_, "tile_scan", settings);
-            vkCmdDispatch(context.commands, groups(tiles, kScanGroup), 1, 1);
-        });
-    }
-    {
-        graph::Pass pass = graph.add_pass("tile_starts", graph::PassKind::compute);
-        handles.starts = pass.storage_read_write(handles.starts);
-        handles.report = pass.storage_write(handles.report, graph::Contents::discard());
-        pass.record([this, &settings](const graph::PassContext& context) {
-            bind(context, starts_, "tile_starts", settings);
-            vkCmdDispatch(context.commands, 1, 1, 1);
-        });
-    }
-    {
-        graph::Pass pass = graph.add_pass("tile_list", graph::PassKind::compute);
-        pass.storage_read(handles.bounds);
-        pass.storage_read(handles.starts);
-        handles.counts = pass.storage_read_write(handles.counts);
-        handles.lists = pass.storage_write(handles.lists, graph::Contents::discard());
-        pass.record([this, &settings, chunks](const graph::PassContext& context) {
-            bind(context, list_, "tile_list", settings);
-            vkCmdDispatch(context.commands, groups(chunks, kChunkGroup), 1, 1);
-        });
-    }
-}
-
-void TilePasses::setup(const graph::PassContext& context, const FrameSettings& settings, const DrawList& draws) {
-    bind(context, setup_, "tile_setup", settings);
-    std::uint32_t splat = 0;
-    for (const InstanceDraws& instance : draws.instances) {
-        InstanceConstants constants = instance_constants(instance, settings.epsilon_scale);
-        for (const auto* ranges : {&instance.sprites, &instance.quads}) {
-            for (const DrawRange& range : *ranges) {
+// Cuts what is to be drawn into batches that fit the buffers.
+void TilePasses::plan(const DrawList& draws) {
+    const std::uint64_t most = buffers_.most_groups(most_groups_);
+    batches_.assign(1, {});
+    const auto add_job = [&](const InstanceDraws& instance, VkDescriptorSet set, std::uint64_t first,
+                             std::uint64_t count) {
+        while (count > 0) {
+            if (batches_.back().groups == most) batches_.emplace_back();
+            Batch& batch = batches_.back();
+            const std::uint64_t part = std::min(count, (most - batch.groups) * kTileGroup);
+            batch.jobs.push_back({&instance, set, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(part),
+                                  static_cast<std::uint32_t>(batch.groups)});
+            batch.groups += groups(part, kTileGroup);
+            first += part;
+            count -= part;
+        }
+    };
+    for (const InstanceDraws& instance : draws.instances)
+        for (const auto* ranges : {&instance.sprites, &instance.quads})
+            for (const DrawRange& range : *ranges)
                 for (const SurfelChunk& chunk : instance.model->surfel_chunks()) {
                     const std::uint64_t first = std::max(range.first, chunk.first);
                     const std::uint64_t end = std::min(range.first + range.count, chunk.first + chunk.count);
-                    if (first >= end) continue;
-                    constants.first_surfel = static_cast<std::uint32_t>(first - chunk.first);
-                    constants.surfel_count = static_cast<std::uint32_t>(end - first);
-                    constants.first_splat = splat;
-                    splat += constants.surfel_count;
-                    vkCmdPushConstants(context.commands, layout_.handle(), kCompute, 0, sizeof constants, &constants);
-                    vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 1, 1,
-                                            &chunk.set, 0, nullptr);
-                    const std::uint32_t all = groups(constants.surfel_count, kSetupShare);
-                    vkCmdDispatch(context.commands, std::min(all, kWidestDispatch), groups(all, kWidestDispatch), 1);
+                    if (first < end) add_job(instance, chunk.set, first - chunk.first, end - first);
                 }
-            }
+}
+
+void TilePasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
+                     const FrameSettings& settings, const Background& background, const DrawList& draws) {
+    plan(draws);
+    const bool one_batch = batches_.size() == 1;
+    buffers_.prepare(settings, batches_.front().groups, !one_batch, empty_picture(settings.view, background));
+    handles_ = buffers_.import(graph, bindings);
+    targets_ = targets;
+    composes_ = composes(settings);
+    segment_depth_ = graph.create_image(
+        "tile_depth", {.format = VK_FORMAT_R32_SFLOAT, .width = settings.width, .height = settings.height});
+    if (one_batch) {
+        add_batch(graph, settings, batches_.front());
+        add_gather(graph, targets, settings);
+        // No cell can hold too much for one go unless the frame does.
+        if (batches_.front().groups > kTileFusedGroups)
+            add_segments(graph, targets, settings, {Stage::kSegmentVisibility, Stage::kSegmentAttributes},
+                         {true, true});
+        return;
+    }
+    // All visibility before all attributes: every batch is set up twice, so that one batch's room is enough.
+    for (const Stage stage : {Stage::kSegmentVisibility, Stage::kSegmentAttributes})
+        for (const Batch& batch : batches_) {
+            add_batch(graph, settings, batch);
+            add_segments(graph, targets, settings, {stage}, {&batch == &batches_.front(), &batch == &batches_.back()});
         }
+}
+
+void TilePasses::add_batch(graph::Graph& graph, const FrameSettings& settings, const Batch& batch) {
+    {
+        graph::Pass pass = graph.add_pass("tile_clear", graph::PassKind::transfer);
+        handles_.masks = pass.transfer_write(handles_.masks, graph::Contents::discard());
+        handles_.cells = pass.transfer_write(handles_.cells, graph::Contents::discard());
+        pass.record([this](const graph::PassContext& context) { buffers_.clear(context.commands); });
+    }
+    {
+        graph::Pass pass = graph.add_pass("tile_setup", graph::PassKind::compute);
+        handles_.records = pass.storage_write(handles_.records, graph::Contents::discard());
+        handles_.blocks = pass.storage_write(handles_.blocks, graph::Contents::discard());
+        handles_.masks = pass.storage_read_write(handles_.masks);
+        handles_.cells = pass.storage_read_write(handles_.cells);
+        pass.record([this, &settings, &batch](const graph::PassContext& context) { setup(context, settings, batch); });
+    }
+    graph::Pass pass = graph.add_pass("tile_cells", graph::PassKind::compute);
+    handles_.cells = pass.storage_read_write(handles_.cells);
+    pass.record([this, &settings](const graph::PassContext& context) {
+        bind(context, Stage::kCells, settings);
+        vkCmdDispatch(context.commands, groups(buffers_.cells(), kTileCellsGroup), 1, 1);
+    });
+}
+
+void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
+    graph::Pass pass = graph.add_pass("tile_gather", graph::PassKind::compute);
+    pass.storage_read(handles_.records);
+    pass.storage_read(handles_.blocks);
+    pass.storage_read(handles_.masks);
+    pass.storage_read(handles_.cells);
+    pass.indirect_buffer(handles_.cells);
+    pass.sampled(targets.depth);
+    pass.sampled(targets.triangle_colour);
+    targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
+    segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
+    if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
+    pass.record([this, &settings](const graph::PassContext& context) {
+        bind(context, Stage::kGather, settings);
+        vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileFusedDispatch);
+    });
+}
+
+void TilePasses::add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
+                              std::vector<Stage> stages, Range range) {
+    graph::Pass pass = graph.add_pass("tile_segments", graph::PassKind::compute);
+    pass.storage_read(handles_.records);
+    pass.storage_read(handles_.blocks);
+    pass.storage_read(handles_.masks);
+    pass.storage_read(handles_.cells);
+    pass.indirect_buffer(handles_.cells);
+    pass.sampled(targets.depth);
+    pass.sampled(targets.triangle_colour);
+    const bool fresh = range.first && buffers_.uniforms().segmented != 0 && stages.front() == Stage::kSegmentVisibility;
+    if (fresh) {
+        targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
+        segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
+        if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
+    } else {
+        targets.accumulation = pass.storage_read_write(targets.accumulation);
+        segment_depth_ = pass.storage_read_write(segment_depth_);
+        if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::keep());
+    }
+    pass.record([this, &settings, stages = std::move(stages), range](const graph::PassContext& context) {
+        for (const Stage stage : stages)
+            segment(context, settings, stage, range);
+    });
+}
+
+void TilePasses::setup(const graph::PassContext& context, const FrameSettings& settings, const Batch& batch) {
+    bind(context, Stage::kSetup, settings);
+    for (const Job& job : batch.jobs) {
+        InstanceConstants constants = instance_constants(*job.instance, settings.epsilon_scale);
+        constants.first_surfel = job.first_surfel;
+        constants.surfel_count = job.count;
+        constants.first_group = job.first_group;
+        vkCmdPushConstants(context.commands, layout_.handle(), kCompute, 0, sizeof constants, &constants);
+        vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 1, 1, &job.surfels,
+                                0, nullptr);
+        const std::uint64_t all = groups(job.count, kTileGroup);
+        vkCmdDispatch(context.commands, static_cast<std::uint32_t>(std::min(all, kWidestDispatch)),
+                      groups(all, kWidestDispatch), 1);
     }
 }
 
-void TilePasses::bind(const graph::PassContext& context, const gpu::ShaderModule& shader, const char* name,
-                      const FrameSettings& settings) {
-    gpu::ComputePipeline& pipeline = pipelines_[{frame_variant(settings), name}];
-    if (!pipeline)
-        pipeline = gpu::ComputePipeline(device_, {&shader, frame_constants(settings)}, layout_.handle(), name);
+void TilePasses::segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Range range) {
+    bind(context, stage, settings);
+    InstanceConstants constants{};
+    for (std::uint32_t word = 0; word < buffers_.uniforms().words; word += kTileSegmentWords) {
+        constants.first_word = word;
+        constants.flags =
+            (range.first && word == 0 ? kInstanceFirstSegment : 0u) |
+            (range.last && word + kTileSegmentWords >= buffers_.uniforms().words ? kInstanceLastSegment : 0u);
+        vkCmdPushConstants(context.commands, layout_.handle(), kCompute, 0, sizeof constants, &constants);
+        vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileSegmentedDispatch);
+        wait_for_compute(context.commands);
+    }
+}
+
+void TilePasses::bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings) {
+    struct Program {
+        const gpu::ShaderModule& shader;
+        const char* name;
+        std::uint32_t part;  // PART of tile_gather.comp
+    };
+    const Program program = [&]() -> Program {
+        switch (stage) {
+            case Stage::kSetup:
+                return {setup_, "tile_setup", 0};
+            case Stage::kCells:
+                return {cells_, "tile_cells", 0};
+            case Stage::kSegmentVisibility:
+                return {gather_, "tile_visibility", 1};
+            case Stage::kSegmentAttributes:
+                return {gather_, "tile_attributes", 2};
+            default:
+                return {gather_, "tile_gather", 0};
+        }
+    }();
+    gpu::ComputePipeline& pipeline = pipelines_[{frame_variant(settings), stage}];
+    if (!pipeline) {
+        std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
+        constants[0] = program.part;
+        constants[3] = composes(settings) ? 1u : 0u;
+        pipeline = gpu::ComputePipeline(device_, {&program.shader, constants}, layout_.handle(), program.name);
+    }
     vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
     const VkDescriptorSet frame_set = data_.set(), tile = tile_set(context);
     vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 0, 1, &frame_set, 0,
@@ -220,17 +279,15 @@ VkDescriptorSet TilePasses::tile_set(const graph::PassContext& context) {
     if (sets_.plan_id == context.plan_id && sets_.set != VK_NULL_HANDLE) return sets_.set;
     pool_.reset();  // one frame is in flight, and it is this one
     sets_ = {context.plan_id, pool_.allocate(tile_layout_)};
-    gpu::DescriptorWriter(sets_.set)
-        .uniform_buffer(kUniforms, buffers_.uniform_buffer().handle())
-        .storage_buffer(kRecords, context.buffer(handles_.records))
-        .storage_buffer(kBounds, context.buffer(handles_.bounds))
-        .storage_buffer(kCounts, context.buffer(handles_.counts))
-        .storage_buffer(kStarts, context.buffer(handles_.starts))
-        .storage_buffer(kLists, context.buffer(handles_.lists))
-        .sampled_image(kDepth, context.depth_view(targets_.depth), sampler_.get(),
+    gpu::DescriptorWriter writer(sets_.set);
+    buffers_.write(writer);
+    writer
+        .sampled_image(8, context.depth_view(targets_.depth), sampler_.get(),
                        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
-        .storage_image(kAccumulation, context.view(targets_.accumulation))
-        .storage_buffer(kReport, context.buffer(handles_.report))
+        .storage_image(9, context.view(targets_.accumulation))
+        .storage_image(10, context.view(segment_depth_))
+        .sampled_image(11, context.view(targets_.triangle_colour), sampler_.get())
+        .storage_image(12, context.view(composes_ ? targets_.picture : targets_.accumulation))
         .write(device_);
     return sets_.set;
 }

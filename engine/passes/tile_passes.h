@@ -1,6 +1,6 @@
 // The tile backend: compute passes that fill the accumulation as the visibility and the attribute pass do, for devices
-// that rasterise in software. Setup (a record a splat), binning (count, scan, list) and gathering are passes of the
-// graph; see shaders/glsl/include/tile.glsl for what they hand to each other.
+// that rasterise in software. Setup (a record a splat, a bit in the mask of each cell of the screen) and gathering are
+// passes of the graph; see shaders/glsl/include/tile.glsl for what they hand to each other.
 #pragma once
 
 #include "engine/passes/frame_targets.h"
@@ -9,52 +9,77 @@
 
 #include <cstdint>
 #include <map>
-#include <string>
+#include <tuple>
+#include <vector>
 
 namespace splice {
 
 class TilePasses {
   public:
-    TilePasses(gpu::Device& device, const FrameData& data);
+    /// `most_groups`: groups of surfels that are worked on at once; 0: as many as the device's limits allow. Frames of
+    /// more are drawn batch by batch.
+    TilePasses(gpu::Device& device, const FrameData& data, std::uint64_t most_groups);
 
-    /// Whether the backend can draw this frame: the view, the device's abilities and its limits.
-    bool can_draw(const FrameSettings& settings, const DrawList& draws) const;
-    /// Before add(). No submitted work may still use the frame before.
-    void prepare(const FrameSettings& settings, const DrawList& draws);
+    /// Whether the backend can draw this frame: the device's abilities, and the view.
+    bool can_draw(const FrameSettings& settings) const;
+    /// Whether add() makes the picture; if not, the normalise pass does. Pictures of numbers and samples it leaves alone.
+    static bool composes(const FrameSettings& settings) {
+        return !is_numeric(settings.view) && settings.antialias == 1;
+    }
+    /// `draws` and `settings` must live until the graph has been executed. No submitted work may still use the frame
+    /// before.
     void add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets, const FrameSettings& settings,
-             const DrawList& draws);
-    /// After a frame: whether its lists had room. If not, prepare() makes it, provided that can_draw() still holds, and
-    /// the frame is to be drawn again.
-    bool complete() const { return buffers_.entries_needed() <= buffers_.capacity(); }
-    /// After a frame that another backend drew: the next one is judged afresh.
-    void forget() { buffers_.forget(); }
+             const Background& background, const DrawList& draws);
 
   private:
+    enum class Stage : std::uint32_t { kSetup, kCells, kGather, kSegmentVisibility, kSegmentAttributes };
+
+    // Consecutive surfels of one model, and their first group in the batch.
+    struct Job {
+        const InstanceDraws* instance;
+        VkDescriptorSet surfels;
+        std::uint32_t first_surfel, count, first_group;
+    };
+    struct Batch {
+        std::vector<Job> jobs;
+        std::uint64_t groups = 0;
+    };
+    // Where a batch stands among all.
+    struct Range {
+        bool first, last;
+    };
     struct Sets {
         std::uint64_t plan_id = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
     };
-    std::uint64_t entries_for(const DrawList& draws) const;
-    void add_setup(graph::Graph& graph, TileHandles& handles, const FrameSettings& settings, const DrawList& draws);
-    void add_lists(graph::Graph& graph, TileHandles& handles, const FrameSettings& settings);
-    void setup(const graph::PassContext& context, const FrameSettings& settings, const DrawList& draws);
-    void bind(const graph::PassContext& context, const gpu::ShaderModule& shader, const char* name,
-              const FrameSettings& settings);
+
+    void plan(const DrawList& draws);
+    void add_batch(graph::Graph& graph, const FrameSettings& settings, const Batch& batch);
+    void add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
+    void add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
+                      std::vector<Stage> stages, Range range);
+    void setup(const graph::PassContext& context, const FrameSettings& settings, const Batch& batch);
+    void segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Range range);
+    void bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings);
     VkDescriptorSet tile_set(const graph::PassContext& context);
 
     gpu::Device& device_;
     const FrameData& data_;
+    std::uint64_t most_groups_;
     bool supported_;
     TileBuffers buffers_;
     TileHandles handles_;
     FrameTargets targets_;
+    bool composes_ = false;
+    graph::ImageHandle segment_depth_;
+    std::vector<Batch> batches_;
     gpu::DescriptorSetLayout surfel_layout_, tile_layout_;
     gpu::PipelineLayout layout_;
-    gpu::ShaderModule setup_, count_, scan_, starts_, list_, gather_;
+    gpu::ShaderModule setup_, cells_, gather_;
     gpu::UniqueSampler sampler_;
     gpu::DescriptorPool pool_;
     Sets sets_;
-    std::map<std::pair<FrameVariant, std::string>, gpu::ComputePipeline> pipelines_;
+    std::map<std::pair<FrameVariant, Stage>, gpu::ComputePipeline> pipelines_;
 };
 
 }  // namespace splice

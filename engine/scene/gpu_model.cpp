@@ -52,7 +52,7 @@ gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device) {
 }
 
 gpu::DescriptorSetLayout surfel_set_layout(const gpu::Device& device) {
-    return {device, {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT, 1}}};
+    return {device, {{0, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT, 1}}};
 }
 
 GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
@@ -71,20 +71,23 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
     // The padding is for synchronisation
     // validation (1.3.239), which takes the four vertices of an instance for four records of the instance's buffer.
-    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
                       std::as_bytes(model.surfels), 3 * sizeof(format::Surfel));
-    create_surfel_chunks(device);
+    create_surfel_chunks(device, model.surfels.size());
     create_materials(device, model);
 }
 
-void GpuModel::create_surfel_chunks(gpu::Device& device) {
+void GpuModel::create_surfel_chunks(gpu::Device& device, std::uint64_t surfels) {
     surfel_layout_ = surfel_set_layout(device);
-    const std::uint64_t surfels = surfels_.size() / sizeof(format::Surfel);
-    for (const gpu::StorageChunk& chunk : gpu::storage_chunks(device.limits(), surfels, sizeof(format::Surfel))) {
-        surfel_chunks_.push_back({pool_.allocate(surfel_layout_), chunk.first_element, chunk.elements});
-        gpu::DescriptorWriter(surfel_chunks_.back().set)
-            .storage_buffer(0, surfels_.handle(), chunk.offset, chunk.size)
-            .write(device);
+    constexpr std::uint64_t kTexels = sizeof(format::Surfel) / sizeof(std::uint32_t[4]);
+    constexpr std::uint64_t kAlignment = 16;  // surfels: no device asks for texel offsets of more than 256 bytes
+    const std::uint64_t most = device.limits().maxTexelBufferElements / kTexels / kAlignment * kAlignment;
+    for (std::uint64_t first = 0; first < surfels; first += most) {
+        const std::uint64_t count = std::min(most, surfels - first);
+        surfel_views_.push_back(gpu::create_texel_view(device, surfels_, VK_FORMAT_R32G32B32A32_UINT,
+                                                       first * sizeof(format::Surfel), count * sizeof(format::Surfel)));
+        surfel_chunks_.push_back({pool_.allocate(surfel_layout_), first, count});
+        gpu::DescriptorWriter(surfel_chunks_.back().set).sampled_texels(0, surfel_views_.back().get()).write(device);
     }
 }
 

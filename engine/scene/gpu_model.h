@@ -16,10 +16,11 @@ namespace splice {
 /// Set 1 of the triangle pass, one a material: binding 0 the diffuse texture, white where there is no image.
 gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device);
 
-/// Set 1 of compute passes over surfels: binding 0 the records of a chunk.
+/// Set 1 of compute passes over surfels: binding 0 the records of a chunk as texels,
+/// R32G32B32A32_UINT, two each.
 gpu::DescriptorSetLayout surfel_set_layout(const gpu::Device& device);
 
-/// Surfels that one storage binding holds.
+/// Surfels that one binding holds.
 struct SurfelChunk {
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::uint64_t first = 0, count = 0;
@@ -39,13 +40,13 @@ class GpuModel {
     const gpu::Buffer& indices() const { return indices_; }
     const gpu::Buffer& surfels() const { return surfels_; }
     VkDescriptorSet material_set(std::uint32_t material) const { return material_sets_[material]; }
-    /// All surfels, in order, in as many pieces as the device's bindings need (128 MiB each on lavapipe).
+    /// All surfels, in order, in as many pieces as the device's texel buffers need.
     const std::vector<SurfelChunk>& surfel_chunks() const { return surfel_chunks_; }
     /// Source units.
     Box bounds() const;
 
   private:
-    void create_surfel_chunks(gpu::Device& device);
+    void create_surfel_chunks(gpu::Device& device, std::uint64_t surfels);
     void create_materials(gpu::Device& device, const ModelView& model);
 
     format::ModelInfo info_{};
@@ -58,6 +59,7 @@ class GpuModel {
     gpu::DescriptorSetLayout set_layout_, surfel_layout_;
     gpu::DescriptorPool pool_;
     std::vector<VkDescriptorSet> material_sets_;
+    std::vector<gpu::UniqueBufferView> surfel_views_;
     std::vector<SurfelChunk> surfel_chunks_;
 };
 

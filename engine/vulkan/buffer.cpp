@@ -33,6 +33,19 @@ std::span<std::byte> Buffer::mapped() const {
     return {memory_.mapped(), static_cast<size_t>(size_)};
 }
 
+UniqueBufferView create_texel_view(const Device& device, const Buffer& buffer, VkFormat format, uint64_t offset,
+                                   uint64_t size) {
+    VkBufferViewCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+    create.buffer = buffer.handle();
+    create.format = format;
+    create.offset = offset;
+    create.range = size;
+    VkBufferView view = VK_NULL_HANDLE;
+    check(vkCreateBufferView(device.handle(), &create, nullptr, &view), "creating a view of texels");
+    return UniqueBufferView(device.handle(), view);
+}
+
 std::vector<StorageChunk> storage_chunks(const VkPhysicalDeviceLimits& limits, uint64_t elements,
                                          uint64_t element_size) {
     // Chunks start at multiples of both the element and the alignment that a descriptor's offset needs.

@@ -40,6 +40,10 @@ class Buffer {
     uint64_t size_ = 0;
 };
 
+/// `size` bytes of a buffer as texels; at most maxTexelBufferElements of them. Throws DeviceError.
+UniqueBufferView create_texel_view(const Device& device, const Buffer& buffer, VkFormat format, uint64_t offset = 0,
+                                   uint64_t size = VK_WHOLE_SIZE);
+
 /// A piece of a storage buffer that fits one descriptor.
 struct StorageChunk {
     uint64_t offset = 0;         ///< bytes, a multiple of minStorageBufferOffsetAlignment

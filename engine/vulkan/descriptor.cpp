@@ -8,10 +8,15 @@ namespace {
 constexpr uint32_t kSetsPerPool = 64;
 
 // What a full pool of kSetsPerPool sets may hold of each type; a set that needs more gets a pool made to its measure.
-constexpr std::array kTypes{
-    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,   VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,         VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-    VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
-    VK_DESCRIPTOR_TYPE_SAMPLER};
+constexpr std::array kTypes{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                            VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                            VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                            VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT,
+                            VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                            VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+                            VK_DESCRIPTOR_TYPE_SAMPLER,
+                            VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                            VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER};
 
 }  // namespace
 
@@ -96,6 +101,26 @@ DescriptorWriter& DescriptorWriter::add_image(uint32_t binding, VkDescriptorType
     write.pImageInfo = &images_.emplace_back(info);
     writes_.push_back(write);
     return *this;
+}
+
+DescriptorWriter& DescriptorWriter::add_texels(uint32_t binding, VkDescriptorType type, VkBufferView view) {
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set_;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = type;
+    write.pTexelBufferView = &texels_.emplace_back(view);
+    writes_.push_back(write);
+    return *this;
+}
+
+DescriptorWriter& DescriptorWriter::sampled_texels(uint32_t binding, VkBufferView view) {
+    return add_texels(binding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, view);
+}
+
+DescriptorWriter& DescriptorWriter::storage_texels(uint32_t binding, VkBufferView view) {
+    return add_texels(binding, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, view);
 }
 
 DescriptorWriter& DescriptorWriter::uniform_buffer(uint32_t binding, VkBuffer buffer, uint64_t offset, uint64_t size) {

@@ -63,17 +63,21 @@ class DescriptorWriter {
     DescriptorWriter& sampled_image(uint32_t binding, VkImageView view, VkSampler sampler,
                                     VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                     uint32_t array_element = 0);
+    DescriptorWriter& sampled_texels(uint32_t binding, VkBufferView view);
+    DescriptorWriter& storage_texels(uint32_t binding, VkBufferView view);
     /// No submitted work may use the set while it is written.
     void write(const Device& device);
 
   private:
     DescriptorWriter& add_image(uint32_t binding, VkDescriptorType type, const VkDescriptorImageInfo& info,
                                 uint32_t array_element);
+    DescriptorWriter& add_texels(uint32_t binding, VkDescriptorType type, VkBufferView view);
     DescriptorWriter& add_buffer(uint32_t binding, VkDescriptorType type, const VkDescriptorBufferInfo& info);
 
     VkDescriptorSet set_;
     std::deque<VkDescriptorImageInfo> images_;  // deques: the writes point into them
     std::deque<VkDescriptorBufferInfo> buffers_;
+    std::deque<VkBufferView> texels_;
     std::vector<VkWriteDescriptorSet> writes_;
 };
 

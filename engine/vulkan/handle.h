@@ -46,6 +46,7 @@ class Unique {
 };
 
 using UniqueBuffer = Unique<VkBuffer, &vkDestroyBuffer>;
+using UniqueBufferView = Unique<VkBufferView, &vkDestroyBufferView>;
 using UniqueImage = Unique<VkImage, &vkDestroyImage>;
 using UniqueImageView = Unique<VkImageView, &vkDestroyImageView>;
 using UniqueSampler = Unique<VkSampler, &vkDestroySampler>;

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 #include "colour.glsl"
+#include "compose.glsl"
 
 layout(constant_id = 0) const bool SURFELS = false;
 layout(constant_id = 3) const bool BY_WEIGHT = false;  // drawn once: surfels own the pixel where there is a weight
@@ -28,18 +29,5 @@ void main() {
         out_colour = vec4(surfels ? -eye_depth : eye_depth, 0, 0, 1);
         return;
     }
-    if (VIEW == VIEW_OVERLAP) {
-        out_colour = vec4(surfels ? sum.a : 0, 0, 0, 1);
-        return;
-    }
-    const vec3 linear = surfels ? sum.rgb / sum.a : triangles.rgb;
-    if (VIEW == VIEW_DEPTH) {
-        out_colour = vec4(linear, 1);
-    } else if (VIEW == VIEW_NORMALS) {
-        out_colour = vec4(TO_RESOLVE ? decode_srgb(linear) : linear, 1);  // numbers, not light
-    } else {
-        // Half scale: two fully weighted splats reach white's level.
-        const vec3 light = VIEW == VIEW_ACCUMULATION ? (surfels ? 0.5 * sum.rgb : vec3(0)) : linear;
-        out_colour = vec4(TO_RESOLVE ? light : encode_srgb(light), 1);
-    }
+    out_colour = composed(triangles, surfels, sum, TO_RESOLVE);
 }

@@ -1,10 +1,13 @@
-// Tile backend: every surfel of a range becomes the record of its splat and the tiles it touches, once a frame. Most
-// surfels of a frame are cheap to reject: a workgroup, which is one subgroup, first finds which of its share are not,
-// then works on those with all of its invocations.
+// Tile backend: every surfel of a range becomes the record of its splat, once a frame. Most surfels of a frame are
+// cheap to reject: a workgroup, which is one subgroup, first finds which of its group are not, then works on those with
+// all of its invocations.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#define COPY_UNIFORMS
 #include "frame.glsl"
 #include "octahedral.glsl"
 #include "colour.glsl"
@@ -16,87 +19,168 @@
 
 layout(local_size_x = 8) in;
 
-// Surfels of a workgroup.
-const uint SHARE = 64;
-shared uint remaining[SHARE];
+layout(set = 1, binding = 0) uniform usamplerBuffer surfels;  // format::Surfel: two texels each
+layout(set = 2, binding = 1, rgba32ui) uniform writeonly uimageBuffer records;
+layout(set = 2, binding = 2, rg32ui) uniform writeonly uimageBuffer block_bounds;
 
-struct StoredSurfel {  // format::Surfel
-    float x, y, z;
-    uint radius_extent;
-    uint normal;
-    uint colour_bend_0;
-    uint bend_1_4;
-    uint patch_clip;
-};
-layout(set = 1, binding = 0, std430) readonly buffer Surfels { StoredSurfel surfels[]; };
+shared uint remaining[GROUP];
 
-SurfelRecord decode(StoredSurfel stored) {
+uint first_solid;  // of tiles
+
+SurfelRecord decode(uvec4 place, uvec4 look) {
     SurfelRecord record;
-    record.position = vec3(stored.x, stored.y, stored.z);
-    record.radius = unpackHalf2x16(stored.radius_extent).x;
-    record.extent = stored.radius_extent >> 16;
-    record.normal = unpackSnorm2x16(stored.normal);
-    record.colour = unpackUnorm4x8(stored.colour_bend_0).rgb;
-    record.bend_0 = unpackSnorm4x8(stored.colour_bend_0).w;
-    record.bend_1_4 = unpackSnorm4x8(stored.bend_1_4);
-    record.patch_number = stored.patch_clip & 0xffff;
-    record.clip = stored.patch_clip >> 16;
+    record.position = uintBitsToFloat(place.xyz);
+    record.radius = unpackHalf2x16(place.w).x;
+    record.extent = place.w >> 16;
+    record.normal = unpackSnorm2x16(look.x);
+    record.colour = unpackUnorm4x8(look.y).rgb;
+    record.bend_0 = unpackSnorm4x8(look.y).w;
+    record.bend_1_4 = unpackSnorm4x8(look.z);
+    record.patch_number = look.w & 0xffff;
+    record.clip = look.w >> 16;
     return record;
-}
-
-// The tiles of every pixel that the sprites of the same splat may reach.
-uvec2 touched_tiles(Splat splat) {
-    const vec2 low = max(min(splat.splat_bounds.xy, floor(splat.anchor)), vec2(0));
-    const vec2 high = min(max(splat.splat_bounds.zw, floor(splat.anchor) + 1), frame.viewport);
-    if (!all(lessThan(low, high))) return uvec2(0);
-    const uvec2 first = uvec2(low) / TILE, beyond = (uvec2(ceil(high)) + TILE - 1) / TILE;
-    return first | beyond << 16;
 }
 
 // Whether anything of a surfel can be in the picture; true when in doubt. Nothing it stands for is farther from its
 // centre than a radius across and one along its normal.
-bool may_show(StoredSurfel stored) {
-    const vec3 centre = to_view_space(vec3(stored.x, stored.y, stored.z));
+bool may_show(uint index) {
+    const uvec4 place = texelFetch(surfels, int(2 * index));
+    const vec3 centre = to_view_space(uintBitsToFloat(place.xyz));
     const float depth = -centre.z;
-    const float reach = sqrt(2.0) * unpackHalf2x16(stored.radius_extent).x * instance.scale;
+    const float reach = sqrt(2.0) * unpackHalf2x16(place.w).x * instance.scale;
     const vec2 half_view = (frame.viewport * 0.5 + PREFILTER_REACH) / frame.pixel_scale;
     const vec2 outside = ORTHOGRAPHIC ? abs(centre.xy) - half_view
                                       : (abs(centre.xy) - half_view * depth) * inversesqrt(1 + half_view * half_view);
-    if (any(greaterThan(outside, vec2(reach))) || depth + reach < frame.near_plane) return false;
-    if ((instance.flags & INSTANCE_TWO_SIDED) != 0) return true;
-    return !beyond_horizon(normal_to_view_space(decode_octahedral(unpackSnorm2x16(stored.normal))), centre);
+    const vec3 normal = decode_octahedral(unpackSnorm2x16(texelFetch(surfels, int(2 * index + 1)).x));
+    const bool away =
+        (instance.flags & INSTANCE_TWO_SIDED) == 0 && beyond_horizon(normal_to_view_space(normal), centre);
+    return !(any(greaterThan(outside, vec2(reach))) || depth + reach < frame.near_plane || away);
 }
 
-void record_surfel(uint index) {
-    const SurfelRecord record = decode(surfels[instance.first_surfel + index]);
-    const uint place = instance.first_splat + index;
-    Splat splat;
-    SurfelFrame surfel;
-    if (!surfel_splat(record, splat, surfel)) return;
-    const uvec2 touched = touched_tiles(splat);
-    if (touched.x == 0) return;
-    records[place] = pack_splat(record, splat, surfel_colour(record, surfel));
-    splat_tiles[place] = touched;
+struct PixelBounds {
+    uvec2 low, high;
+    bool solid;
+};
+
+// Whose pixel centres a splat may reach; none where it is outside.
+PixelBounds bounds_of(Splat splat, out vec2 reach) {
+    const vec2 corner = floor(splat.anchor);
+    const vec2 low = min(splat.splat_bounds.xy, corner), high = max(splat.splat_bounds.zw, corner + 1);
+    reach = max(splat.anchor - low, high - splat.anchor);
+    const float slack = 0.51;
+    const vec2 first = clamp(ceil(low - slack), vec2(0), frame.viewport);
+    const vec2 beyond = clamp(floor(high + slack), vec2(0), frame.viewport);
+    return PixelBounds(uvec2(first), uvec2(beyond), false);
+}
+
+// What one invocation records at `place`; a place without a splat reaches nothing.
+PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
+    PixelBounds bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
+    uvec4 reaches = pack_place(vec2(0), vec2(-1e4), 0);
+    const int texel = int(place * RECORD_TEXELS);
+    if (takes_part) {
+        const SurfelRecord record =
+            decode(texelFetch(surfels, int(2 * surfel_index)), texelFetch(surfels, int(2 * surfel_index + 1)));
+        Splat splat;
+        SurfelFrame surfel;
+        const bool drawn = surfel_splat(record, splat, surfel);
+        vec2 reach;
+        const PixelBounds own = bounds_of(splat, reach);
+        if (drawn && all(lessThan(own.low, own.high))) {
+            bounds = own;
+            reaches = pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth));
+            const SurfelColour colour = surfel_colour(record, surfel);
+            const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
+            const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
+            const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
+            // Rounded up, so that nothing on the disk is beyond it.
+            const float rise = splat.rise * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth) * (1 + 1.0 / 512) + 1e-7;
+            uint marks = VIEW == VIEW_SAMPLES ? 0 : record.extent & MARK_SWELL;
+            marks |= is_sub_pixel(splat) ? MARK_SPECK : 0;
+            marks |=
+                splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane ? MARK_NEAR : 0;
+            marks |= VIEW != VIEW_SAMPLES && record.clip >> 6 != 0 ? MARK_CUT : 0;
+            bounds.solid = marks != 0;
+            imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
+            imageStore(records, texel + 2,
+                       uvec4(floatBitsToUint(splat.g * to_z), (floatBitsToUint(push) & ~MARKS) | marks,
+                             packHalf2x16(vec2(min(rise, 6e4), colour.along_v.b))));
+            imageStore(records, texel + 3,
+                       uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
+                             packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
+            if (marks != 0) {
+                const int solid_texel = int(first_solid + 2 * place);
+                imageStore(records, solid_texel,
+                           uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
+                imageStore(records, solid_texel + 1, uvec4(record.clip, 0, 0, 0));
+            }
+        }
+    }
+    imageStore(records, texel, reaches);
+    return bounds;
+}
+
+// Of all invocations, for all of them.
+PixelBounds united(PixelBounds bounds) {
+    [[unroll]] for (uint step = 1; step < gl_WorkGroupSize.x; step *= 2) {
+        const uint other = gl_LocalInvocationID.x ^ step;
+        bounds.low = min(bounds.low, subgroupShuffle(bounds.low, other));
+        bounds.high = max(bounds.high, subgroupShuffle(bounds.high, other));
+    }
+    return bounds;
 }
 
 void main() {
+    copy_uniforms();
+    first_solid = tiles.first_solid;
     // A dispatch is at most 65,535 workgroups wide.
-    const uint first = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * SHARE;
-    const uint end = min(first + SHARE, instance.surfel_count);
+    const uint workgroup = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    const uint first = workgroup * GROUP;
+    if (first >= instance.surfel_count) return;
+    const uint end = min(first + GROUP, instance.surfel_count);
+    const uint group = instance.first_group + workgroup;
     const uint lane = gl_LocalInvocationID.x;
-    uint kept = 0;
-    for (uint batch = first; batch < end; batch += gl_WorkGroupSize.x) {
+
+    uint kept = 0, batch = first;
+    do {
         const uint index = batch + lane;
-        bool shows = false;
-        if (index < end) {
-            shows = may_show(surfels[instance.first_surfel + index]);
-            splat_tiles[instance.first_splat + index] = uvec2(0);
-        }
+        const bool shows = index < end && may_show(instance.first_surfel + min(index, end - 1));
         const uvec4 all = subgroupBallot(shows);
         if (shows) remaining[kept + subgroupBallotExclusiveBitCount(all)] = index;
         kept += subgroupBallotBitCount(all);
+        batch += gl_WorkGroupSize.x;
+    } while (batch < end);
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+
+    PixelBounds group_bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
+    uvec2 own_block = uvec2(0);  // of the block with the number of this invocation
+    bool solid = false;
+    if (kept != 0) {
+        uint block = 0;
+        do {
+            const uint i = block * BLOCK + lane;
+            PixelBounds bounds =
+                record_surfel(i < kept, instance.first_surfel + remaining[min(i, kept - 1)], group * GROUP + i);
+            solid = solid || subgroupBallot(bounds.solid).x != 0;
+            bounds = united(bounds);
+            group_bounds.low = min(group_bounds.low, bounds.low);
+            group_bounds.high = max(group_bounds.high, bounds.high);
+            if (block == lane && bounds.low.x < bounds.high.x)
+                own_block = bounds.low | bounds.high << 16;
+            ++block;
+        } while (block * BLOCK < kept);
     }
-    memoryBarrierShared();
-    barrier();
-    for (uint i = lane; i < kept; i += gl_WorkGroupSize.x) record_surfel(remaining[i]);
+    imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block.x | (solid ? BLOCK_SOLID : 0), own_block.y, 0, 0));
+
+    if (group_bounds.low.x >= group_bounds.high.x) return;
+    const uvec2 first_cell = group_bounds.low >> tiles.cell_shift;
+    const uvec2 touched = ((group_bounds.high - 1) >> tiles.cell_shift) + 1 - first_cell;
+    uint i = lane;
+    if (i < touched.x * touched.y) do {
+            const uint cell = (first_cell.y + i / touched.x) * tiles.cells_x + first_cell.x + i % touched.x;
+            atomicOr(masks[cell * tiles.words + group / 32], 1u << group % 32);
+            atomicAdd(cells[cell], 1);
+            i += gl_WorkGroupSize.x;
+        } while (i < touched.x * touched.y);
 }

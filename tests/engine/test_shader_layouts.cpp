@@ -158,31 +158,37 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
                        {MEMBER(InstanceConstants, model_to_view), MEMBER(InstanceConstants, scale),
                         MEMBER(InstanceConstants, epsilon_scale), MEMBER(InstanceConstants, flags),
                         MEMBER(InstanceConstants, first_patch), MEMBER(InstanceConstants, first_surfel),
-                        MEMBER(InstanceConstants, surfel_count), MEMBER(InstanceConstants, first_splat),
-                        MEMBER(InstanceConstants, padding)}});
+                        MEMBER(InstanceConstants, surfel_count), MEMBER(InstanceConstants, first_group),
+                        MEMBER(InstanceConstants, first_word)}});
 }
 
 TEST_CASE("tile uniforms have the layout that the shaders declare") {
     expect_everywhere(SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, false,
                       {sizeof(TileUniforms),
-                       {MEMBER(TileUniforms, tiles_x), MEMBER(TileUniforms, tiles_y), MEMBER(TileUniforms, splats),
-                        MEMBER(TileUniforms, chunks), MEMBER(TileUniforms, capacity)}},
+                       {MEMBER(TileUniforms, cells_x), MEMBER(TileUniforms, cells_y), MEMBER(TileUniforms, cell_shift),
+                        MEMBER(TileUniforms, words), MEMBER(TileUniforms, segmented), MEMBER(TileUniforms, first_solid),
+                        MEMBER(TileUniforms, background)}},
                       2);
 }
 
-TEST_CASE("surfels and records of splats have the layout that the tile shaders declare") {
+TEST_CASE("surfels have the layout that tile_setup.comp reads as texels") {
     using format::Surfel;
-    // In words: the radius with the extent, the colour with the first bend, the patch with the clip line.
-    expect_everywhere(
-        SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true,
-        {sizeof(Surfel),
-         {MEMBER(Surfel, position), MEMBER(Surfel, position) + 4, MEMBER(Surfel, position) + 8, MEMBER(Surfel, radius),
-          MEMBER(Surfel, normal), MEMBER(Surfel, colour), MEMBER(Surfel, shading_bend) + 1, MEMBER(Surfel, patch)}},
-        1, 0);
+    // In words: the radius with the extent, the colour with the first bend.
+    const std::vector<unsigned> words{MEMBER(Surfel, position),         MEMBER(Surfel, position) + 4,
+                                      MEMBER(Surfel, position) + 8,     MEMBER(Surfel, radius),
+                                      MEMBER(Surfel, normal),           MEMBER(Surfel, colour),
+                                      MEMBER(Surfel, shading_bend) + 1, MEMBER(Surfel, patch)};
+    for (unsigned i = 0; i < words.size(); ++i)
+        CHECK(words[i] == 4 * i);
+    CHECK(sizeof(Surfel) == 4 * words.size());
     CHECK(offsetof(Surfel, extent) == offsetof(Surfel, radius) + 2);
     CHECK(offsetof(Surfel, clip) == offsetof(Surfel, patch) + 2);
     CHECK(offsetof(Surfel, shading_bend) == offsetof(Surfel, colour) + 3);
-    expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true, {kTileRecordBytes, {0}}, 2, 1);
+}
+
+TEST_CASE("the cells of tiles have the layout that the shaders declare") {
+    expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, false,
+                      {kTileCellList, {kTileFusedDispatch, kTileSegmentedDispatch, kTileCellList}}, 2, 5);
 }
 
 TEST_CASE("constants that C++ and GLSL share have the same values") {
@@ -202,10 +208,12 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
     CHECK(constant("include/tile.glsl", "TILE") == kTileWidth);
     CHECK(constant("include/tile.glsl", "TILE", 1) == kTileHeight);
-    CHECK(constant("tile_setup.comp", "SHARE") == kSetupShare);
-    CHECK(constant("tile_count.comp", "local_size_x") == kChunkGroup);
-    CHECK(constant("tile_list.comp", "local_size_x") == kChunkGroup);
-    CHECK(constant("tile_scan.comp", "local_size_x") == kScanGroup);
+    CHECK(constant("include/tile.glsl", "GROUP") == kTileGroup);
+    CHECK(constant("include/tile.glsl", "BLOCK") == kTileBlock);
+    CHECK(constant("include/tile.glsl", "RECORD_TEXELS") == kTileRecordTexels);
+    CHECK(constant("include/tile.glsl", "SEGMENT_WORDS") == kTileSegmentWords);
+    CHECK(constant("include/tile.glsl", "FUSED_GROUPS") == kTileFusedGroups);
+    CHECK(constant("tile_cells.comp", "local_size_x") == kTileCellsGroup);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS")) == kSwellStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);

@@ -228,8 +228,7 @@ TEST_CASE("a view that tiles cannot draw falls back to sprites and says so") {
     CHECK(renderer.render(scene, settings).stats.backend == (software ? Backend::kTile : Backend::kSprite));
 }
 
-TEST_CASE("lists without room grow until a frame is complete") {
-    // Every disk touches every tile: far more entries than a first frame makes room for.
+TEST_CASE("every disk touches every tile") {
     Renderer renderer({});
     std::vector<Disk> disks;
     for (int i = 0; i < 64; ++i)
@@ -240,6 +239,31 @@ TEST_CASE("lists without room grow until a frame is complete") {
     settings.camera = looking_down_z();
     settings.clip_to_scene = false;
     check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
+}
+
+TEST_CASE("frames too large for one batch, and cells too full for one go") {
+    // A wall of 40,000 disks is 625 groups: in batches of 100, whole, and seen from so far that all are in few cells.
+    HandmadeModel model;
+    model.add_surfels(sheet({-1, -0.8f, -2}, {2, 0, 0}, {0, 1.6f, 0}, 200, kRed))
+        .add_surfels(sheet({-0.5f, -0.4f, -1.8f}, {1, 0, 0}, {0, 0.8f, 0}, 30, kBlue));
+    for (const std::uint64_t most_groups : {std::uint64_t{100}, std::uint64_t{0}}) {
+        Renderer renderer({.most_tile_groups = most_groups});
+        const Scene scene = scene_of(renderer.load(view_of(model.model())));
+        CaptureSettings settings;
+        settings.width = 203;
+        settings.height = 150;
+        settings.camera = looking_down_z();
+        for (const double distance : {0.0, 100.0}) {
+            settings.camera.eye.z = distance;
+            CAPTURE(most_groups, distance);
+            check_agreement(renderer, scene, settings);
+        }
+        // And the next frame is a small one again.
+        HandmadeModel small;
+        small.add_surfels(sheet({-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, 8));
+        settings.camera.eye.z = 0;
+        check_agreement(renderer, scene_of(renderer.load(view_of(small.model()))), settings);
+    }
 }
 
 TEST_CASE("tiles pass the validation layers") {

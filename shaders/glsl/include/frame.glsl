@@ -48,6 +48,8 @@ layout(set = 0, binding = 1, std430) readonly buffer LightRecords {
 };
 
 const uint INSTANCE_TWO_SIDED = 1;
+const uint INSTANCE_FIRST_SEGMENT = 2;  // compute: nothing was gathered yet
+const uint INSTANCE_LAST_SEGMENT = 4;
 
 layout(push_constant, std430) uniform InstanceConstants {
     vec4 model_to_view[3];  // rows of the affine map from unit-box to view space: uniform scale, rotation, translation
@@ -57,9 +59,40 @@ layout(push_constant, std430) uniform InstanceConstants {
     uint first_patch;       // added to patch numbers, so that instances get different colours
     uint first_surfel;      // compute: of the bound surfels
     uint surfel_count;
-    uint first_splat;       // compute: where the first of them is recorded
-    uint padding;
+    uint first_group;       // compute: number of the first of their groups
+    uint first_word;        // compute: where in the cells' masks a segment begins
 } instance;
+
+#ifdef COPY_UNIFORMS
+// A software device may read uniforms invocation by invocation wherever some of them may rest: shaders that use many in
+// loops read them once, at the start of main().
+struct FrameCopy {
+    vec2 viewport;
+    float pixel_scale, near_plane, far_plane;
+    uint prefilter;
+    float sample_share, sample_radius;
+    vec3 ambient;
+    uint light_count;
+    float specular, shininess, rim, rim_exponent;
+    uint phong;
+} frame_copy;
+struct InstanceCopy {
+    vec4 model_to_view[3];
+    float scale, epsilon_scale;
+    uint flags, first_patch, first_surfel, surfel_count, first_group;
+} instance_copy;
+
+void copy_uniforms() {
+    frame_copy = FrameCopy(frame.viewport, frame.pixel_scale, frame.near_plane, frame.far_plane, frame.prefilter,
+                           frame.sample_share, frame.sample_radius, frame.ambient, frame.light_count, frame.specular,
+                           frame.shininess, frame.rim, frame.rim_exponent, frame.phong);
+    instance_copy = InstanceCopy(instance.model_to_view, instance.scale, instance.epsilon_scale, instance.flags,
+                                 instance.first_patch, instance.first_surfel, instance.surfel_count,
+                                 instance.first_group);
+}
+#define frame frame_copy
+#define instance instance_copy
+#endif
 
 vec3 to_view_space(vec3 position) {
     const vec4 p = vec4(position, 1);

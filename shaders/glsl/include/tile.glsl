@@ -1,38 +1,50 @@
-// What the passes of the tile backend hand to each other. The screen is cut into tiles of TILE pixels; every splat is
-// recorded once, and listed once for every tile that its bounds touch. Needs frame.glsl, splat.glsl.
+// What the passes of the tile backend hand to each other. The screen is cut into cells, and those into tiles of TILE
+// pixels. Setup records the splats of GROUP surfels at a time, without gaps, in blocks of BLOCK, and sets the group's
+// bit in the mask of every cell that one of its blocks touches; gathering walks the bits of its tile's cell, picks the
+// blocks that touch the tile, and of those the splats.
 //
-// The lists are ordered by record whatever the device does: the records are cut into chunks, a chunk is counted and
-// listed by one invocation in order, and the lists' places are a prefix sum over (tile, chunk).
+// Bits have no order to get wrong and every group has its own place, so the result is the same whatever the device does
+// first. There is no list that could be too short. Some drivers (llvmpipe) end every loop of an invocation once all its
+// loops have run 65,535 times, so no invocation may run more often: a tile whose cell holds more than FUSED_GROUPS is
+// gathered in segments. Texel buffers, not storage buffers, because software devices read those lane by lane.
+// Needs frame.glsl.
 #ifndef SPLICE_TILE_GLSL
 #define SPLICE_TILE_GLSL
 
 // engine/passes/tile_buffers.h
 const uvec2 TILE = uvec2(8, 4);  // pixels; a row is a vector of a CPU's device
+const uint GROUP = 64;           // surfels
+const uint BLOCK = 8;            // splats
+const uint RECORD_TEXELS = 4;    // tile_record.glsl; solids have one more
+const uint SEGMENT_WORDS = 24;   // of a cell's mask
+const uint FUSED_GROUPS = 416;   // groups of a cell that is gathered at once
+const uint BLOCKS = GROUP / BLOCK;
 
 layout(set = 2, binding = 0, std140) uniform TileUniforms {
-    uint tiles_x, tiles_y;
-    uint splats;    // records, culled ones included
-    uint chunks;    // of records
-    uint capacity;  // entries of the lists
-} tiles;
-
-struct TileSplat {
-    uvec4 words[6];  // tile_record.glsl
-};
-layout(set = 2, binding = 1, std430) buffer SplatRecords { TileSplat records[]; };
-// Tiles touched: minimum and, beyond it, maximum x (16 bits each), then y; 0 where nothing is.
-layout(set = 2, binding = 2, std430) buffer SplatBounds { uvec2 splat_tiles[]; };
-// [tile][chunk]: entries; then where the chunk's next entry goes, from the tile's start.
-layout(set = 2, binding = 3, std430) buffer TileCounts { uint counts[]; };
-// Where a tile's list begins; one more than there are tiles.
-layout(set = 2, binding = 4, std430) buffer TileStarts { uint starts[]; };
-layout(set = 2, binding = 5, std430) buffer TileLists { uint list[]; };
-
-uint tile_count() { return tiles.tiles_x * tiles.tiles_y; }
-
-uvec2 chunk_range(uint chunk) {
-    const uint size = (tiles.splats + tiles.chunks - 1) / tiles.chunks;
-    return min(uvec2(chunk, chunk + 1) * size, uvec2(tiles.splats));
+    uint cells_x, cells_y;
+    uint cell_shift;  // a cell is 1 << cell_shift pixels wide and high
+    uint words;       // of a cell's mask, 32 groups each
+    uint segmented;   // 1: no cell is gathered at once
+    uint first_solid;  // texel of the records
+    vec4 background;  // what the picture holds where nothing is
 }
+tiles;
+
+layout(set = 2, binding = 3, std430) buffer TileMasks {
+    uint masks[];
+};  // [cell][word]
+layout(set = 2, binding = 5, std430) buffer TileCells {
+    uvec4 fused_dispatch, segmented_dispatch;  // workgroups: tiles of a cell, cells, 1
+    uint cells[];  // groups of each; then, as many again: where those gathered at once are (x, y: 16 bits
+                   // each), and from the end those in segments
+};
+
+uint cell_count() {
+    return tiles.cells_x * tiles.cells_y;
+}
+
+// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, for all
+// blocks of a group that has a solid.
+const uint BLOCK_SOLID = 0x8000;
 
 #endif

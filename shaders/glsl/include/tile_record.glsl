@@ -1,71 +1,106 @@
-// A splat as the tile backend records it: what splat.glsl computes of it, in the units of the depth buffer, 96 bytes.
-// Needs frame.glsl, splat.glsl, surfel_frame.glsl, tile.glsl.
+// A splat as the tile backend records it: what splat.glsl computes of it, in the units of the depth buffer. Flat
+// splats, those of disks and not of solids, have the first four, a line of a
+// cache; those of solids and cut disks lie behind them all. Needs frame.glsl, splat.glsl,
+// surfel_frame.glsl, tile.glsl.
+//   0  anchor, reach around it (halves), z
+//   1  plane_map
+//   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
+//   3  colour, its change along u, its change along v but for blue (halves)
+//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it
 #ifndef SPLICE_TILE_RECORD_GLSL
 #define SPLICE_TILE_RECORD_GLSL
 
-// Depth buffer values are encode_depth's, linear in the pixel along a plane:
-//   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
-//   orthographic  z = z_P + g'.d - h s
-struct TileRecord {
-    vec2 anchor, g;     // splat.glsl; orthographic: g in depth buffer values a pixel
-    vec4 plane_map;
-    vec2 plane_offset;  // zero, or unit: as two 16-bit snorm
-    float z;            // of the anchor
-    float push;         // epsilon; perspective: over the near plane; orthographic: in depth buffer values
-    bool speck;
-    vec2 skew;
-    float climb;        // perspective: change of h, orthographic: of z, a radius along the normal
-    vec2 swell;         // radii; as the steps of surfel_extent.h
-    vec3 clip;          // decode_clip; as in the model file
-    float rise;         // the disk's depths as a share of the anchor's; orthographic: in depth buffer values; half
-    vec4 conic_weight;
-    vec3 colour, colour_u, colour_v;  // halves
-};
+// Marks: how far the solid reaches above and below, as format::Surfel stores it (5 bits each), and
+const uint MARKS = 0x1fff;
+const uint MARK_SWELL = 0x3ff;
+const uint MARK_SPECK = 1 << 10;
+const uint MARK_NEAR = 1 << 11;  // crosses the near plane
+const uint MARK_CUT = 1 << 12;   // by a line
 
-float depth_range() { return frame.far_plane - frame.near_plane; }
-
-TileSplat pack_splat(SurfelRecord surfel, Splat splat, SurfelColour colour) {
-    const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
-    const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
-    const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
-    // Rounded up, so that nothing on the disk is beyond it.
-    const float rise = splat.rise * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth) * (1 + 1.0 / 512) + 1e-7;
-    TileSplat record;
-    record.words[0] = floatBitsToUint(vec4(splat.anchor, splat.g * to_z));
-    record.words[1] = floatBitsToUint(splat.plane_map);
-    record.words[2] = floatBitsToUint(
-        vec4(encode_depth(splat.anchor_depth), flagged(push, is_sub_pixel(splat)), splat.skew.xy));
-    const uint solid = VIEW == VIEW_SAMPLES ? 0 : surfel.extent & 1023 | surfel.clip << 16;
-    record.words[3] = uvec4(solid, packHalf2x16(vec2(colour.along_v.b, min(rise, 6e4))),
-                            packSnorm2x16(splat.plane_offset), floatBitsToUint(climb));
-    record.words[4] = floatBitsToUint(vec4(splat.conic, splat.weight));
-    record.words[5] = uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
-                            packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg));
-    return record;
+float depth_range() {
+    return frame.far_plane - frame.near_plane;
 }
 
-TileRecord unpack_splat(TileSplat packed) {
-    const vec4 depths = uintBitsToFloat(packed.words[2]);
-    const vec2 blue_rise = unpackHalf2x16(packed.words[3].y);
-    const vec2 blue_red = unpackHalf2x16(packed.words[5].y);
-    TileRecord record;
-    record.anchor = uintBitsToFloat(packed.words[0].xy);
-    record.g = uintBitsToFloat(packed.words[0].zw);
-    record.plane_map = uintBitsToFloat(packed.words[1]);
-    record.plane_offset = unpackSnorm2x16(packed.words[3].z);
-    record.z = depths.x;
-    record.push = abs(depths.y);
-    record.speck = depths.y < 0;
-    record.skew = depths.zw;
-    record.climb = uintBitsToFloat(packed.words[3].w);
-    record.swell = decode_extent(packed.words[3].x & 1023).xy;
-    record.clip = decode_clip(packed.words[3].x >> 16);
-    record.rise = blue_rise.y;
-    record.conic_weight = uintBitsToFloat(packed.words[4]);
-    record.colour = vec3(unpackHalf2x16(packed.words[5].x), blue_red.x);
-    record.colour_u = vec3(blue_red.y, unpackHalf2x16(packed.words[5].z));
-    record.colour_v = vec3(unpackHalf2x16(packed.words[5].w), blue_rise.x);
-    return record;
+struct SplatPlace {
+    vec2 anchor, reach;
+    float z;
+};
+
+SplatPlace unpack_place(uvec4 texel) {
+    return SplatPlace(uintBitsToFloat(texel.xy), unpackHalf2x16(texel.z), uintBitsToFloat(texel.w));
+}
+
+// `reach` is rounded up.
+uvec4 pack_place(vec2 anchor, vec2 reach, float z) {
+    return uvec4(floatBitsToUint(anchor), packHalf2x16(reach * (1 + 1.0 / 512) + 1.0 / 64), floatBitsToUint(z));
+}
+
+// Depth buffer values are encode_depth's, linear in the pixel along a plane:
+//   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
+//   orthographic  z = z_P + g'.d - h s,  g' = g in depth buffer values a pixel
+struct SplatPlane {
+    vec4 plane_map;
+    vec2 g;
+    float push;  // epsilon; perspective: over the near plane; orthographic: in depth buffer values
+    float rise;  // the disk's depths as a share of the anchor's; orthographic: in depth buffer values
+    float blue_v;
+    uint marks;
+};
+
+SplatPlane unpack_plane(uvec4 map, uvec4 texel) {
+    const vec2 rise_blue = unpackHalf2x16(texel.w);
+    return SplatPlane(uintBitsToFloat(map), uintBitsToFloat(texel.xy), uintBitsToFloat(texel.z & ~MARKS), rise_blue.x,
+                      rise_blue.y, texel.z & MARKS);
+}
+
+struct SplatSolid {
+    vec2 skew;
+    float climb;        // perspective: change of h, orthographic: of z, a radius along the normal
+    vec2 swell;         // radii
+    vec2 plane_offset;  // zero, or unit
+    vec3 clip;          // decode_clip
+};
+
+// Flat splats have no texel of this kind: anything may be there.
+SplatSolid unpack_solid(uvec4 texel, uint clip, uint marks) {
+    if (marks == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
+    const vec3 depths = uintBitsToFloat(texel.xyz);
+    return SplatSolid(depths.xy, depths.z, decode_extent(marks & MARK_SWELL).xy, unpackSnorm2x16(texel.w),
+                      decode_clip((marks & MARK_CUT) != 0 ? clip : 0));
+}
+
+struct SplatPaint {
+    vec3 colour, colour_u, colour_v;
+};
+
+SplatPaint unpack_paint(SplatPlane splat, uvec4 texel) {
+    const vec2 blue_red = unpackHalf2x16(texel.y);
+    SplatPaint paint;
+    paint.colour = vec3(unpackHalf2x16(texel.x), blue_red.x);
+    paint.colour_u = vec3(blue_red.y, unpackHalf2x16(texel.z));
+    paint.colour_v = vec3(unpackHalf2x16(texel.w), splat.blue_v);
+    return paint;
+}
+
+struct SplatFilter {
+    vec3 conic;
+    float weight;
+};
+
+// What make_splat computes, from the inverse A of its J: V = J J^T / 2 + p I, J J^T = S^-1 with S = A^T A, and with
+// Q = |S| |V| both V^-1 = (S / 2 + p |S| I) / Q and |J| / (2 sqrt|V|) = 1 / (2 sqrt Q) need no division by |S|.
+SplatFilter filter_of(SplatPlane splat) {
+    if (frame.prefilter == 0) return SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
+    const vec4 a = splat.plane_map;
+    const vec3 s = vec3(dot(a.xy, a.xy), dot(a.xy, a.zw), dot(a.zw, a.zw));
+    const float area = a.x * a.w - a.y * a.z, determinant = area * area;
+    const float q = 0.25 + 0.5 * PREFILTER * (s.x + s.z) + PREFILTER * PREFILTER * determinant;
+    const bool near = (splat.marks & MARK_NEAR) != 0;
+    SplatFilter result;
+    result.conic = (0.5 * s + PREFILTER * determinant * vec3(1, 0, 1)) / q;
+    result.weight = max(0.5 * inversesqrt(q), MIN_WEIGHT);
+    if (near) result = SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
+    return result;
 }
 
 #endif

@@ -358,6 +358,7 @@ TEST_CASE("splice-bake notices an impossible output before it works") {
 TEST_CASE("splice-bake makes a model of a point cloud and says what it dropped") {
     const TemporaryFolder folder;
     std::ofstream file(folder / "scan.xyz");
+    file.precision(12);
     for (int i = 0; i < 400; ++i)
         file << 512345.5 + i % 20 << ' ' << 5403059 + i / 20 << " 247.5 200 " << i % 256 << " 30\n";
     file << "nan 0 0 1 2 3\n512345.5 5403059 247.5 1 2 3\n";

@@ -97,7 +97,7 @@ class Assembler {
         normals.reserve(patch.surfel_count);
         for (std::uint32_t i = 0; i < patch.surfel_count; ++i) {
             format::Surfel& surfel = model_.surfels[patch.first_surfel + i];
-            surfel.patch = static_cast<std::uint32_t>(index);
+            surfel.patch = static_cast<std::uint16_t>(index);
             normals.push_back(stored_normal(surfel));
             const float radius = float_from_half(surfel.radius);
             // The extent of a disk along an axis is r sqrt(1 - n^2); widened by its rounding.

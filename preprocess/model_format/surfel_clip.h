@@ -1,6 +1,6 @@
-// Surfel::clip: the straight line at which a disk is cut, so that it does not overhang the crease or border that it lies
-// at (clip lines: Zwicker et al. 2004). Kept is the side of the centre, where x u + y v <= offset, (u, v) in radii along
-// s, t = tangents_of(normal). shaders/glsl/include/surfel_frame.glsl decodes the same.
+// Surfel::clip: the straight line at which a disk is cut, so that it does not overhang the crease or border that it
+// lies at (clip lines: Zwicker et al. 2004). Kept is the side of the centre, where x u + y v <= offset, (u, v) in radii
+// along s, t = tangents_of(normal). shaders/glsl/include/surfel_frame.glsl decodes the same.
 //   bits 0..5   direction (x, y), in 64ths of a turn from u to v
 //   bits 6..15  1 - offset in 1023rds, what is cut from the rim; 0: the disk is whole
 #pragma once

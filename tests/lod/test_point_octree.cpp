@@ -129,7 +129,7 @@ void check_shape(const std::vector<PointNode>& nodes, std::size_t surfels) {
 
 TEST_CASE("each surfel is in one leaf, and only once") {
     std::vector<Surfel> surfels = bumpy_sphere(20000, 1);
-    for (std::uint32_t i = 0; i < surfels.size(); ++i)
+    for (std::uint16_t i = 0; i < surfels.size(); ++i)
         surfels[i].patch = i;  // a label
     const std::vector<PointNode> nodes = build_point_octree(surfels);
     check_shape(nodes, 20000);

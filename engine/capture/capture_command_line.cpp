@@ -16,8 +16,9 @@ namespace {
 
 constexpr const char* kAbout = R"(splice-capture - a picture of a hybrid model, without a window
 
-INPUT is a model file (splice-bake), a scene file (JSON, docs/scene_format.md) or a mesh (OBJ, PLY, STL, OFF, SMF), which
-is baked in memory first. Coordinates are those of the file. By default the model is framed as large as it fits.)";
+INPUT is a model file (splice-bake), a scene file (JSON, docs/scene_format.md), a mesh (OBJ, PLY, STL, OFF, SMF) or a point
+cloud (LAS, PCD, PLY, XYZ, PTS, PWN); the last two are baked in memory first. Coordinates are those of the file. By default the
+model is framed as large as it fits.)";
 
 constexpr const char* kExamples = R"(Examples:
   splice-capture bunny.splice -o bunny.png
@@ -200,7 +201,7 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     CLI::App app(kAbout, "splice-capture");
     app.footer(kExamples);
     app.set_version_flag("--version", "splice-capture " SPLICE_VERSION);
-    app.add_option("INPUT", raw.input, "MODEL.splice, SCENE.json or a mesh");
+    app.add_option("INPUT", raw.input, "MODEL.splice, SCENE.json, a mesh or a point cloud");
     app.add_option("-o,--output", raw.output, "The picture, PNG");
     app.add_option("--device", command.renderer.device,
                    "auto: a GPU if there is one, else lavapipe; cpu; or a number of --list-devices")

@@ -98,6 +98,7 @@ constexpr const char* kFooter = R"(Examples:
   splice-bake bunny.obj                          writes bunny.splice
   splice-bake scan.ply.gz -o scan.splice --stats scan.json
   splice-bake part.stl --representation triangles
+  splice-bake tile.las --neighbours 24           a noisy point cloud
   splice-bake cow.smf --selection thesis --sampling 4     as published
 
 Lengths are shares of the longest side of the model's bounding box, areas shares of the surface's area.
@@ -119,10 +120,13 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
     std::string output, stats;
 
     CLI::App app{
-        "Bakes a mesh into a hybrid model: triangle patches where the surface is flat, surfels where it varies.",
+        "Bakes a mesh into a hybrid model: triangle patches where the surface is flat, surfels where it varies; or a "
+        "point cloud into a model of surfels.",
         "splice-bake"};
     app.footer(kFooter);
-    app.add_option("INPUT", command.input, "Mesh: OBJ, PLY, STL, OFF or SMF, also gzipped (.gz)")->required();
+    app.add_option("INPUT", command.input,
+                   "Mesh: OBJ, PLY, STL, OFF or SMF; point cloud: LAS, PCD, PLY, XYZ, PTS or PWN; also gzipped (.gz)")
+        ->required();
     app.add_option("-o,--output", output,
                    "Model file to write; default: INPUT's name with .splice, in the current folder")
         ->type_name("MODEL.splice");
@@ -180,6 +184,15 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
         ->type_name("LENGTH")
         ->group(surfels);
     app.add_flag("--no-prune", no_prune, "Keep surfels that others cover")->group(surfels);
+
+    app.add_option(
+           "--neighbours", options.cloud.neighbours,
+           "Nearest neighbours that define the plane of a point without a normal, 6..64; more smooth out noise, "
+           "and small features with it; default " +
+               std::to_string(options.cloud.neighbours))
+        ->check(integer_between(6, 64))
+        ->type_name("COUNT")
+        ->group("Point clouds");
 
     const std::string other = "Other";
     app.add_option("--crease-angle", options.repair.crease_angle_degrees,

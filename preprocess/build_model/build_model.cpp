@@ -1,6 +1,9 @@
 #include "preprocess/build_model/build_model.h"
 
+#include "preprocess/build_model/assemble_cloud.h"
 #include "preprocess/build_model/assemble_model.h"
+#include "preprocess/cloud/orient_normals.h"
+#include "preprocess/cloud/read_point_cloud.h"
 #include "preprocess/model_format/error.h"
 
 #include <tbb/global_control.h>
@@ -67,11 +70,61 @@ Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats
     return model;
 }
 
+Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
+    const auto limit = limit_threads(options.threads);
+    const Stopwatch total;
+    if (options.cluster.representation == ForcedRepresentation::kTriangles)
+        throw UsageError("a point cloud has no triangles to draw: leave --representation triangles away");
+    CloudStats& counts = stats.cloud.emplace();
+    counts.source_points = cloud.source_points;
+    counts.nonfinite_points = cloud.nonfinite_points;
+    counts.withheld_points = cloud.withheld_points;
+
+    const UnitCloud unit =
+        timed(progress, "sort", counts.seconds_sort, [&] { return make_unit_cloud(std::move(cloud)); });
+    counts.duplicate_points = unit.duplicate_points;
+    counts.points = unit.positions.size();
+
+    CloudSurface surface = timed(progress, "surface", counts.seconds_surface,
+                                 [&] { return estimate_surface(unit, options.cloud, progress); });
+    counts.estimated_normals = surface.estimated_normals;
+    counts.border_points = surface.border_points;
+    counts.isolated_points = surface.isolated_points;
+    // Normals of the file know their side.
+    if (unit.normals.empty()) {
+        counts.components = timed(progress, "orient", counts.seconds_orient, [&] {
+            return orient_normals(unit.positions, surface.neighbours, surface.disks).components;
+        });
+    }
+    Model model = timed(progress, "assemble", stats.seconds_assemble, [&] { return assemble_cloud(unit, surface); });
+    stats.cluster.surfel_patches = model.patches.size();
+    stats.surfel.surfels = model.surfels.size();
+    stats.seconds_total += total.seconds();
+    return model;
+}
+
 Model bake_file(const std::filesystem::path& path, const BakeOptions& options, BakeStats& stats,
                 const Progress& progress) {
     const auto limit = limit_threads(options.threads);
     const Stopwatch preparation;
-    SourceMesh source = timed(progress, "read", stats.seconds_read, [&] { return read_mesh_file(path); });
+    SourceFile file;
+    PointCloud cloud;
+    SourceMesh source;
+    const bool is_cloud = timed(progress, "read", stats.seconds_read, [&] {
+        file = load_source_file(path);
+        if (is_point_cloud(file)) {
+            cloud = parse_point_cloud(file);
+            return true;
+        }
+        source = parse_mesh_file(file);
+        return false;
+    });
+    std::string().swap(file.bytes);
+    if (is_cloud) {
+        stats.warnings = cloud.warnings;
+        stats.seconds_total += preparation.seconds();
+        return build_cloud_model(std::move(cloud), options, stats, progress);
+    }
     stats.warnings = source.warnings;
     IndexedMesh mesh = timed(progress, "repair", stats.seconds_repair, [&] {
         return repair_mesh(std::move(source), options.repair, stats.repair, path.string());

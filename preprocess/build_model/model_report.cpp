@@ -53,6 +53,7 @@ std::string model_report_json(const ModelFile& file, const std::string& name) {
                       {"scale", info.source_scale},
                       {"offset", info.source_offset}};
     json["bounds"] = {{"min", info.bounds_min}, {"max", info.bounds_max}};
+    json["point_cloud"] = (info.flags & format::kPointCloud) != 0;
     json["two_sided"] = (info.flags & format::kTwoSided) != 0;
     json["has_colours"] = (info.flags & format::kHasColours) != 0;
     json["has_uvs"] = (info.flags & format::kHasUvs) != 0;
@@ -88,11 +89,21 @@ std::string model_report_text(const ModelFile& file, const std::string& name) {
     std::ostringstream text;
     text << name << ": model of format version " << format::kVersion << ", " << file.bytes().size()
          << " bytes, intact\n";
-    text << "source      " << info.source_triangles << " triangles, " << info.source_vertices
-         << " vertices, longest side " << info.source_scale << '\n';
+    const bool cloud = (info.flags & format::kPointCloud) != 0;
+    text << "source      ";
+    if (cloud) {
+        text << info.source_vertices << " points";
+    } else {
+        text << info.source_triangles << " triangles, " << info.source_vertices << " vertices";
+    }
+    text << ", longest side " << info.source_scale << '\n';
     text << "surface     "
-         << ((info.flags & format::kTwoSided) != 0 ? "open, drawn from both sides" : "closed, drawn from outside")
-         << ((info.flags & format::kHasColours) != 0 ? ", vertex colours" : "")
+         << (cloud                                   ? "point cloud, drawn from both sides"
+             : (info.flags & format::kTwoSided) != 0 ? "open, drawn from both sides"
+                                                     : "closed, drawn from outside")
+         << ((info.flags & format::kHasColours) == 0 ? ""
+             : cloud                                 ? ", colours"
+                                                     : ", vertex colours")
          << ((info.flags & format::kHasUvs) != 0 ? ", texture coordinates" : "") << '\n';
     text << "drawn       " << info.drawn_triangles << " triangles in " << totals.triangle_patches << " patches, "
          << view.surfels.size() << " surfels in " << totals.surfel_patches << " patches\n";

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -73,6 +74,34 @@ void store_bounds(format::OctreeNode& node, const Box& box) {
     }
 }
 
+// Over patches in `order`, whose codes ascend.
+std::vector<format::OctreeNode> build_nodes(std::span<const std::uint64_t> codes, std::span<const Box> bounds,
+                                            std::span<const std::uint32_t> order) {
+    std::vector<format::OctreeNode> nodes;
+    nodes.push_back(node_over({0, static_cast<std::uint32_t>(order.size())}));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Range range = {nodes[i].first_patch, nodes[i].first_patch + nodes[i].patch_count};
+        if (nodes[i].patch_count <= kMaxLeafPatches) continue;
+        nodes[i].first_child = static_cast<std::uint32_t>(nodes.size());
+        for (const Range& part : split(codes, range)) {
+            nodes.push_back(node_over(part));
+            ++nodes[i].child_count;
+        }
+    }
+
+    std::vector<Box> boxes(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parent
+        const format::OctreeNode& node = nodes[i];
+        if (node.child_count == 0)
+            for (std::uint32_t place = 0; place < node.patch_count; ++place)
+                boxes[i].add(bounds[order[node.first_patch + place]]);
+        for (std::uint32_t child = 0; child < node.child_count; ++child)
+            boxes[i].add(boxes[node.first_child + child]);
+        store_bounds(nodes[i], boxes[i]);
+    }
+    return nodes;
+}
+
 }  // namespace
 
 PatchOctree build_patch_octree(std::span<const Box> bounds) {
@@ -92,28 +121,14 @@ PatchOctree build_patch_octree(std::span<const Box> bounds) {
     for (std::uint32_t place = 0; place < patch_count; ++place)
         std::tie(codes[place], octree.order[place]) = keys[place];
 
-    octree.nodes.push_back(node_over({0, patch_count}));
-    for (std::size_t i = 0; i < octree.nodes.size(); ++i) {
-        const Range range = {octree.nodes[i].first_patch, octree.nodes[i].first_patch + octree.nodes[i].patch_count};
-        if (octree.nodes[i].patch_count <= kMaxLeafPatches) continue;
-        octree.nodes[i].first_child = static_cast<std::uint32_t>(octree.nodes.size());
-        for (const Range& part : split(codes, range)) {
-            octree.nodes.push_back(node_over(part));
-            ++octree.nodes[i].child_count;
-        }
-    }
-
-    std::vector<Box> boxes(octree.nodes.size());
-    for (std::size_t i = octree.nodes.size(); i-- > 0;) {  // children come after their parent
-        const format::OctreeNode& node = octree.nodes[i];
-        if (node.child_count == 0)
-            for (std::uint32_t place = 0; place < node.patch_count; ++place)
-                boxes[i].add(bounds[octree.order[node.first_patch + place]]);
-        for (std::uint32_t child = 0; child < node.child_count; ++child)
-            boxes[i].add(boxes[node.first_child + child]);
-        store_bounds(octree.nodes[i], boxes[i]);
-    }
+    octree.nodes = build_nodes(codes, bounds, octree.order);
     return octree;
+}
+
+std::vector<format::OctreeNode> build_octree_in_order(std::span<const Box> bounds) {
+    std::vector<std::uint32_t> order(bounds.size());
+    std::iota(order.begin(), order.end(), 0u);
+    return build_nodes(std::vector<std::uint64_t>(bounds.size(), 0), bounds, order);
 }
 
 }  // namespace splice

@@ -35,4 +35,8 @@ struct PatchOctree {
 /// `bounds` has one box a patch, at least one.
 PatchOctree build_patch_octree(std::span<const Box> bounds);
 
+/// The same for patches that stay in the order they have, which should be one along which neighbours follow each other:
+/// each node's are divided evenly.
+std::vector<format::OctreeNode> build_octree_in_order(std::span<const Box> bounds);
+
 }  // namespace splice

@@ -1,6 +1,5 @@
 #include "preprocess/mesh/read_mesh.h"
 
-#include "preprocess/mesh/file_bytes.h"
 #include "preprocess/mesh/mesh_formats.h"
 #include "preprocess/mesh/sniff_format.h"
 #include "preprocess/model_format/error.h"
@@ -8,15 +7,14 @@
 namespace splice {
 
 SourceMesh read_mesh_file(const std::filesystem::path& path) {
-    const std::string name = path.string();
-    std::string bytes = read_file_bytes(path);
-    if (is_gzip(bytes)) bytes = gunzip(bytes, name);
+    return parse_mesh_file(load_source_file(path));
+}
 
-    std::filesystem::path bare = path.filename();
-    if (bare.extension() == ".gz") bare.replace_extension();
-    const CompanionFiles companions(path.parent_path());
+SourceMesh parse_mesh_file(const SourceFile& file) {
+    const std::string &bytes = file.bytes, &name = file.name;
+    const CompanionFiles companions(file.folder);
     SourceMesh mesh;
-    switch (sniff_format(bytes, bare.extension().string(), name)) {
+    switch (sniff_format(bytes, file.extension, name)) {
         case MeshFormat::kObj:
             mesh = parse_obj(bytes, name, companions);
             break;

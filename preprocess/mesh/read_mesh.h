@@ -3,6 +3,7 @@
 #pragma once
 
 #include "preprocess/mesh/indexed_mesh.h"
+#include "preprocess/mesh/source_file.h"
 #include "preprocess/progress.h"
 
 #include <filesystem>
@@ -47,6 +48,9 @@ struct RepairOptions {
 
 /// By content first, extension second: OBJ, PLY, STL, OFF, SMF, each also gzipped. Throws InputError, SystemError.
 SourceMesh read_mesh_file(const std::filesystem::path& path);
+
+/// The same for a file that is in memory already. Throws InputError.
+SourceMesh parse_mesh_file(const SourceFile& file);
 
 /// Throws InputError("name") when no triangle is left.
 IndexedMesh repair_mesh(SourceMesh source, const RepairOptions& options, RepairReport& report, const std::string& name);

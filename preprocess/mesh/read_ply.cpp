@@ -1,5 +1,6 @@
 #include "preprocess/mesh/mesh_formats.h"
 #include "preprocess/mesh/ply_header.h"
+#include "preprocess/mesh/ply_roles.h"
 #include "preprocess/mesh/ply_rows.h"
 #include "preprocess/mesh/source_mesh_builder.h"
 #include "preprocess/model_format/error.h"
@@ -9,58 +10,6 @@
 
 namespace splice {
 namespace {
-
-/// What a scalar property of a vertex or face means; the order is that of `Row`.
-enum Role { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kU, kV, kRed, kGreen, kBlue, kTextureNumber, kRoles, kNoRole };
-
-Role role_of(const std::string& property) {
-    static constexpr std::array<std::pair<std::string_view, Role>, 26> kNames = {{
-        {"x", kX},
-        {"y", kY},
-        {"z", kZ},
-        {"nx", kNormalX},
-        {"ny", kNormalY},
-        {"nz", kNormalZ},
-        {"normal_x", kNormalX},
-        {"normal_y", kNormalY},
-        {"normal_z", kNormalZ},
-        {"u", kU},
-        {"v", kV},
-        {"s", kU},
-        {"t", kV},
-        {"texture_u", kU},
-        {"texture_v", kV},
-        {"red", kRed},
-        {"green", kGreen},
-        {"blue", kBlue},
-        {"r", kRed},
-        {"g", kGreen},
-        {"b", kBlue},
-        {"diffuse_red", kRed},
-        {"diffuse_green", kGreen},
-        {"diffuse_blue", kBlue},
-        {"texnumber", kTextureNumber},
-        {"texture_number", kTextureNumber},
-    }};
-    for (const auto& [name, role] : kNames) {
-        if (property == name) return role;
-    }
-    return kNoRole;
-}
-
-/// Colours are fractions in floating-point properties, whole ranges in integer ones.
-double colour_scale(PlyType type) {
-    switch (type) {
-        case PlyType::kFloat32:
-        case PlyType::kFloat64:
-            return 1.0;
-        case PlyType::kInt16:
-        case PlyType::kUint16:
-            return 1.0 / 65535;
-        default:
-            return 1.0 / 255;
-    }
-}
 
 class PlyParser {
   public:
@@ -102,7 +51,7 @@ class PlyParser {
     /// An element's properties with their meaning looked up once.
     struct Column {
         PlyProperty property;
-        Role role = kNoRole;
+        PlyRole role = kNoRole;
         List list = List::kNone;
         double scale = 1;
     };
@@ -113,8 +62,8 @@ class PlyParser {
             Column column{property, kNoRole, List::kNone, 1};
             const std::string& p = property.name;
             if (!property.is_list) {
-                column.role = role_of(p);
-                if (column.role >= kRed && column.role <= kBlue) column.scale = colour_scale(property.type);
+                column.role = ply_role_of(p);
+                if (column.role >= kRed && column.role <= kBlue) column.scale = ply_colour_scale(property.type);
             } else if (p == "vertex_indices" || p == "vertex_index") {
                 column.list = element.name == "tristrips" ? List::kStrips : List::kIndices;
             } else if (p == "texcoord") {

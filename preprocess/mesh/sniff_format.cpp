@@ -11,7 +11,9 @@
 namespace splice {
 namespace {
 
-constexpr const char* kSupported = "supported are OBJ, PLY, STL, OFF and SMF, each also gzipped";
+constexpr const char* kSupported =
+    "supported are OBJ, PLY, STL, OFF and SMF meshes and LAS, PCD, PLY, XYZ, PTS and PWN point clouds, each also "
+    "gzipped";
 
 /// The first token after blank lines, byte order mark and `#` comments.
 std::string_view first_token(std::string_view bytes) {

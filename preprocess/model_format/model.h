@@ -22,6 +22,7 @@ struct Model {
     std::vector<format::Material> materials;
     std::vector<format::Texture> textures;
     std::vector<std::byte> texels;
+    std::vector<format::PointNode> point_tree;
 };
 
 /// Borrowed form: spans into a Model or into a mapped file; what the engine loads from. The owner must outlive it.
@@ -37,6 +38,7 @@ struct ModelView {
     std::span<const format::Material> materials;
     std::span<const format::Texture> textures;
     std::span<const std::byte> texels;
+    std::span<const format::PointNode> point_tree;
 };
 
 ModelView view_of(const Model& model);

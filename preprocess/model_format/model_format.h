@@ -14,7 +14,7 @@
 namespace splice::format {
 
 inline constexpr char kMagic[8] = {'S', 'P', 'L', 'I', 'C', 'E', '\r', '\n'};
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 
 struct FileHeader {
@@ -29,17 +29,18 @@ struct FileHeader {
 static_assert(sizeof(FileHeader) == 64 && offsetof(FileHeader, checksum) == 24);
 
 enum class SectionKind : std::uint32_t {
-    kModelInfo = 1,  // one ModelInfo
-    kVertices = 2,   // Vertex
-    kIndices = 3,    // uint32; the finest level of all patches comes first, patch by patch
-    kSurfels = 4,    // Surfel; a patch's are contiguous and in Morton order
-    kPatches = 5,    // Patch, in octree order
-    kLods = 6,       // Lod
-    kOctree = 7,     // OctreeNode; node 0 is the root, children of a node are contiguous
-    kMergeTree = 8,  // MergeNode
-    kMaterials = 9,  // Material; at least one
-    kTextures = 10,  // Texture
-    kTexels = 11,    // bytes, RGBA8 sRGB, mip levels one after another, rows top to bottom
+    kModelInfo = 1,   // one ModelInfo
+    kVertices = 2,    // Vertex
+    kIndices = 3,     // uint32; the finest level of all patches comes first, patch by patch
+    kSurfels = 4,     // Surfel; a patch's are contiguous and in Morton order
+    kPatches = 5,     // Patch, in octree order
+    kLods = 6,        // Lod
+    kOctree = 7,      // OctreeNode; node 0 is the root, children of a node are contiguous
+    kMergeTree = 8,   // MergeNode
+    kMaterials = 9,   // Material; at least one
+    kTextures = 10,   // Texture
+    kTexels = 11,     // bytes, RGBA8 sRGB, mip levels one after another, rows top to bottom
+    kPointTree = 12,  // PointNode; of a point cloud, else none. Node 0 is the root, children of a node are contiguous
 };
 
 struct SectionEntry {
@@ -55,6 +56,7 @@ enum ModelFlags : std::uint32_t {
     kTwoSided = 1u << 0,    // open or inconsistently oriented surface: flip normals to the eye, cull nothing
     kHasColours = 1u << 1,  // vertex colours came with the input
     kHasUvs = 1u << 2,
+    kPointCloud = 1u << 3,  // baked from points: surfels only, no vertices, triangles or merges
 };
 
 struct ModelInfo {
@@ -64,7 +66,7 @@ struct ModelInfo {
     std::uint32_t flags;  // ModelFlags
     float bounds_max[3];
     std::uint32_t lod_levels;       // levels that every patch has at most
-    std::uint64_t source_vertices;  // of the repaired mesh
+    std::uint64_t source_vertices;  // of the repaired mesh; points of a cloud
     std::uint64_t source_triangles;
     std::uint64_t drawn_triangles;  // finest triangles of triangle patches
     float max_surfel_radius;
@@ -112,12 +114,13 @@ struct Patch {
     std::uint32_t surfel_count;  // 0 for triangle patches
     std::uint32_t first_lod;
     std::uint32_t lod_count;  // at least 1; the first is the finest
-    float area;               // of its source triangles
+    float area;               // of its source triangles; 0 in a cloud
     float max_surfel_radius;
     float max_surfel_epsilon;
-    float roughness;           // area-weighted RMS angle of face normals to the mean normal, radians
-    std::uint32_t merge_root;  // node of the merge tree that became this patch (a leaf id is a triangle id)
-    std::uint64_t reserved;    // 0
+    float roughness;  // area-weighted RMS angle of face normals to the mean normal, radians
+    std::uint32_t
+        merge_root;          // node of the merge tree that became this patch (a leaf id is a triangle id); 0 in a cloud
+    std::uint64_t reserved;  // 0
 };
 static_assert(sizeof(Patch) == 96);
 
@@ -147,6 +150,25 @@ struct MergeNode {
     std::uint32_t phase;  // 1 or 2
 };
 static_assert(sizeof(MergeNode) == 16);
+
+/// A node of the point octree (Pajarola et al. 2004, sections 3.2 and 4): an elliptical splat that stands for all
+/// surfels below it.
+struct PointNode {
+    float position[3];         // mean of the surfels' centres; centre of ellipse and sphere
+    float sphere_radius;       // every disk below it, its solid included, is in this sphere
+    std::uint32_t normal;      // octahedral; of the ellipse's plane and axis of the normal cone
+    std::uint32_t major_axis;  // octahedral; in the plane, up to rounding
+    float major, minor;        // half axes: projected to the plane, every disk below it is in the ellipse
+    std::uint8_t colour[3];    // sRGB; mean over the disks' areas in linear light
+    std::uint8_t cone_angle;  // half-angle of a cone about `normal` that holds every normal below it, steps of pi / 255
+    std::uint16_t extent;     // surfel_extent.h, with `major` as the radius
+    std::uint8_t child_count;  // 0: a leaf, whose children are its surfels
+    std::uint8_t reserved;     // 0
+    std::uint32_t first_child;
+    std::uint32_t first_surfel;  // surfels [first_surfel, first_surfel + surfel_count) are below it
+    std::uint32_t surfel_count;
+};
+static_assert(sizeof(PointNode) == 52 && offsetof(PointNode, first_child) == 40);
 
 inline constexpr std::uint32_t kNoTexture = 0xffffffffu;
 

@@ -11,11 +11,10 @@ namespace {
 
 using namespace format;
 
-// Header and table padded to the alignment: everything before the first section.
+// Header and table, an even number of entries: everything before the first section.
 struct FileStart {
     FileHeader header{};
     std::array<SectionEntry, kSectionCount> table{};
-    std::array<std::byte, kSectionAlignment - (sizeof(SectionEntry) * kSectionCount) % kSectionAlignment> padding{};
 };
 static_assert(sizeof(FileStart) % kSectionAlignment == 0);
 
@@ -67,7 +66,7 @@ std::uint64_t write_all(const ModelView& view, const Sink& sink) {
 
 ModelView view_of(const Model& model) {
     return {&model.info,  model.vertices,   model.indices,   model.surfels,  model.patches, model.lods,
-            model.octree, model.merge_tree, model.materials, model.textures, model.texels};
+            model.octree, model.merge_tree, model.materials, model.textures, model.texels,  model.point_tree};
 }
 
 std::uint64_t write_model(const ModelView& view, const std::filesystem::path& path) {

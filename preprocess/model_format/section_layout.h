@@ -9,7 +9,7 @@
 
 namespace splice::format {
 
-inline constexpr std::size_t kSectionCount = 11;
+inline constexpr std::size_t kSectionCount = 12;
 
 constexpr std::uint64_t round_up_to_alignment(std::uint64_t bytes) {
     return (bytes + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
@@ -32,6 +32,7 @@ void for_each_section(View& view, const Visitor& visit) {
     visit(SectionKind::kMaterials, "materials", view.materials);
     visit(SectionKind::kTextures, "textures", view.textures);
     visit(SectionKind::kTexels, "texels", view.texels);
+    visit(SectionKind::kPointTree, "point tree", view.point_tree);
 }
 
 }  // namespace splice::format

@@ -53,6 +53,7 @@ class Validator {
         check_surfels();
         check_octree();
         check_merge_tree();
+        check_point_tree();
     }
 
   private:
@@ -69,6 +70,8 @@ class Validator {
             fail(&where, parts...);
     }
 
+    bool is_cloud() const { return (view_.info->flags & kPointCloud) != 0; }
+
     void check_info() const {
         const ModelInfo& info = *view_.info;
         require(std::isfinite(info.source_scale) && info.source_scale > 0, info.source_scale,
@@ -76,13 +79,15 @@ class Validator {
         for (const double offset : info.source_offset)
             require(std::isfinite(offset), info.source_offset, "source offset is not finite");
         require(is_box(info), info.bounds_min, "model info: bounds are not a box");
-        require((info.flags & ~(kTwoSided | kHasColours | kHasUvs)) == 0, info.flags, "unknown flags ", info.flags);
+        require((info.flags & ~(kTwoSided | kHasColours | kHasUvs | kPointCloud)) == 0, info.flags, "unknown flags ",
+                info.flags);
         require(is_length(info.max_surfel_radius), info.max_surfel_radius, "largest surfel radius is not a length");
         require(is_length(info.median_surfel_radius) && info.median_surfel_radius <= info.max_surfel_radius,
                 info.median_surfel_radius, "median surfel radius is not between 0 and the largest");
         const std::uint64_t nodes = info.source_triangles + view_.merge_tree.size();
         require(info.source_triangles <= UINT32_MAX && nodes <= UINT32_MAX, info.source_triangles,
                 "more triangles and merges than 32-bit ids");
+        require(!is_cloud() || nodes == 0, info.source_triangles, "a point cloud with triangles or merges");
     }
 
     void check_vertices() const {
@@ -182,8 +187,9 @@ class Validator {
                 patch.max_surfel_radius, "patch's largest surfel radius exceeds the model's");
         require(is_length(patch.max_surfel_epsilon), patch.max_surfel_epsilon,
                 "patch's largest epsilon is not a length");
-        require(patch.merge_root < view_.info->source_triangles + view_.merge_tree.size(), patch.merge_root,
-                "merge root ", patch.merge_root, " is not in the merge tree");
+        const std::uint64_t nodes = is_cloud() ? 1 : view_.info->source_triangles + view_.merge_tree.size();
+        require(patch.merge_root < nodes, patch.merge_root, "merge root ", patch.merge_root,
+                " is not in the merge tree");
         require(patch.reserved == 0, patch.reserved, "reserved bytes are not 0");
     }
 
@@ -276,6 +282,44 @@ class Validator {
             require(std::isfinite(node.cost), node.cost, "merge cost is not finite");
             require(node.phase == 1 || node.phase == 2, node.phase, "merge phase ", node.phase, ", expected 1 or 2");
         }
+    }
+
+    // As check_octree(), over surfels instead of patches.
+    void check_point_tree() const {
+        if (view_.point_tree.empty()) return;
+        const PointNode& root = view_.point_tree.front();
+        require(is_cloud(), root, "a point tree in a model that is no point cloud");
+        require(root.first_surfel == 0 && root.surfel_count == view_.surfels.size(), root,
+                "point tree's root does not hold all surfels");
+        std::uint64_t next = 1;
+        for (const PointNode& node : view_.point_tree) {
+            require(all_finite(node.position), node, "point node's position is not finite");
+            require(is_length(node.sphere_radius), node.sphere_radius, "point node's radius is not a length");
+            require(is_length(node.major) && is_length(node.minor) && node.minor <= node.major, node.major,
+                    "point node's axes are no ellipse's");
+            require(node.reserved == 0, node.reserved, "reserved bytes are not 0");
+            require(node.surfel_count > 0, node.surfel_count, "point node without surfels");
+            if (node.child_count == 0) {
+                require(node.first_child == 0, node.first_child, "point tree's leaf with a child");
+                continue;
+            }
+            require(node.child_count <= 8, node.child_count, unsigned{node.child_count}, " children of a point node");
+            require(node.first_child == next, node.first_child, "point node's children start at ", node.first_child,
+                    ", expected ", next);
+            require(node.child_count <= view_.point_tree.size() - next, node.child_count,
+                    "point node's children beyond the ", view_.point_tree.size(), " nodes");
+            std::uint64_t surfel = node.first_surfel;
+            const std::uint64_t end = surfel + node.surfel_count;
+            for (const PointNode& child : view_.point_tree.subspan(next, node.child_count)) {
+                require(child.first_surfel == surfel && child.surfel_count <= end - surfel, child,
+                        "point node's children do not divide its surfels");
+                surfel += child.surfel_count;
+            }
+            require(surfel == end, node, "point node's children do not divide its surfels");
+            next += node.child_count;
+        }
+        require(next == view_.point_tree.size(), root, view_.point_tree.size(), " point nodes, ", next,
+                " are reached from the root");
     }
 
     const ModelView& view_;

@@ -354,3 +354,47 @@ TEST_CASE("splice-bake notices an impossible output before it works") {
         CHECK(names_in(folder.path()) == std::vector<std::string>{"cube.obj", "folder.splice"});
     }
 }
+
+TEST_CASE("splice-bake makes a model of a point cloud and says what it dropped") {
+    const TemporaryFolder folder;
+    std::ofstream file(folder / "scan.xyz");
+    file.precision(12);
+    for (int i = 0; i < 400; ++i)
+        file << 512345.5 + i % 20 << ' ' << 5403059 + i / 20 << " 247.5 200 " << i % 256 << " 30\n";
+    file << "nan 0 0 1 2 3\n512345.5 5403059 247.5 1 2 3\n";
+    file.close();
+    const Outcome outcome = bake(folder, {"scan.xyz", "--neighbours", "12", "--stats", "scan.json"});
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.out, Contains("402 points") && Contains("1 points that are not finite dropped") &&
+                                Contains("1 duplicate points dropped") && Contains("400 surfels"));
+    const auto stats = nlohmann::json::parse(read_text(folder / "scan.json"));
+    CHECK(stats["input"]["points"] == 402);
+    CHECK(stats["cloud"]["nonfinite_points"] == 1);
+    CHECK(stats["cloud"]["duplicate_points"] == 1);
+    CHECK(stats["cloud"]["estimated_normals"] == 400);
+    CHECK(stats["output"]["surfels"] == 400);
+    const Outcome info =
+        test::run({.program = test::program("splice-info"), .arguments = {"scan.splice"}, .folder = folder.path()});
+    CHECK(info.exit_code == 0);
+    CHECK_THAT(info.out, Contains("400 points") && Contains("point cloud") && Contains("colours"));
+}
+
+TEST_CASE("splice-bake refuses what it cannot do with a point cloud in one line") {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "scan.xyz") << "0 0 0\n1 0 0\n0 1 0\n";
+    const Outcome triangles = bake(folder, {"scan.xyz", "--representation", "triangles"});
+    CHECK(triangles.exit_code == 2);
+    CHECK_THAT(triangles.err, Contains("no triangles"));
+    CHECK(bake(folder, {"scan.xyz", "--neighbours", "5"}).exit_code == 2);
+    std::string laz = "LASF" + std::string(371, '\0');
+    laz[24] = 1;
+    laz[25] = 2;
+    laz[94] = static_cast<char>(227);
+    laz[104] = static_cast<char>(0x83);
+    std::ofstream(folder / "scan.laz", std::ios::binary) << laz;
+    const Outcome compressed = bake(folder, {"scan.laz"});
+    CHECK(compressed.exit_code == 1);
+    CHECK(line_count(compressed.err) == 1);
+    CHECK_THAT(compressed.err, Contains("LAZ") && Contains("uncompress"));
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"scan.laz", "scan.xyz"});
+}

@@ -51,6 +51,10 @@ std::uint64_t walk(const ModelView& view) {
         sum += sum_bytes(view.patches.subspan(node.first_patch, node.patch_count));
         sum += sum_bytes(view.octree.subspan(node.first_child, node.child_count));
     }
+    for (const format::PointNode& node : view.point_tree) {
+        sum += sum_bytes(view.surfels.subspan(node.first_surfel, node.surfel_count));
+        sum += sum_bytes(view.point_tree.subspan(node.first_child, node.child_count));
+    }
     return sum;
 }
 

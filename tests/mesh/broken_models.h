@@ -114,4 +114,7 @@ inline const std::map<std::string, Expectation> kBrokenModels = {
     {"made/zero-byte.stl", kRefused},
 };
 
+/// No meshes, but baked as point clouds of so many points.
+inline const std::map<std::string, std::size_t> kBrokenClouds = {{"points_emptyface.ply", 1024}};
+
 }  // namespace splice::test

@@ -1,0 +1,155 @@
+#include "preprocess/build_model/assemble_cloud.h"
+
+#include "preprocess/build_model/normal_cone.h"
+#include "preprocess/build_model/patch_octree.h"
+#include "preprocess/lod/point_octree.h"
+#include "preprocess/model_format/half.h"
+#include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/surfel_extent.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace splice {
+namespace {
+
+// The depth offset, in radii: what a mesh's surfels have on average, whose radius is 0.8 of their spacing before it is
+// shrunk to what they must cover.
+constexpr float kEpsilon = 1.5f;
+
+Vec3f stored_normal(const format::Surfel& surfel) {
+    const auto normal = decode_octahedral(surfel.normal);
+    return {normal[0], normal[1], normal[2]};
+}
+
+format::Surfel make_surfel(const Vec3f& position, const CloudDisk& disk, std::uint32_t colour) {
+    format::Surfel surfel{};
+    for (int axis = 0; axis < 3; ++axis) {
+        surfel.position[axis] = position[axis];
+        surfel.colour[axis] = static_cast<std::uint8_t>(colour >> (8 * axis));
+    }
+    surfel.radius = half_at_least(disk.radius);
+    const float radius = float_from_half(surfel.radius);
+    surfel.extent = encode_extent({disk.above, disk.below, kEpsilon * radius + disk.above + disk.below}, radius);
+    surfel.normal = encode_octahedral(disk.normal.x(), disk.normal.y(), disk.normal.z());
+    return surfel;
+}
+
+class Assembler {
+  public:
+    Assembler(const UnitCloud& cloud, const CloudSurface& surface) : cloud_(cloud), surface_(surface) {}
+
+    Model assemble() {
+        model_.surfels.resize(cloud_.positions.size());
+        tbb::parallel_for(std::size_t{0}, model_.surfels.size(), [&](std::size_t point) {
+            const std::uint32_t colour = cloud_.colours.empty() ? kWhite : cloud_.colours[point];
+            model_.surfels[point] = make_surfel(cloud_.positions[point], surface_.disks[point], colour);
+        });
+        model_.point_tree = build_point_octree(model_.surfels);
+        cut_patches();
+        bounds_.resize(model_.patches.size());
+        tbb::parallel_for(std::size_t{0}, model_.patches.size(), [&](std::size_t patch) { measure_patch(patch); });
+        model_.octree = build_octree_in_order(bounds_);
+        model_.lods.resize(model_.patches.size());
+        model_.materials.push_back({kWhite, format::kNoTexture});
+        add_info();
+        return std::move(model_);
+    }
+
+  private:
+    // Patches are the largest nodes of the tree that are small enough, small siblings together.
+    void cut_patches() { cut_patches(0); }
+
+    void cut_patches(std::uint32_t index) {
+        const format::PointNode& node = model_.point_tree[index];
+        if (node.surfel_count <= kCloudPatchPoints) return add_patch(node);
+        const format::PointNode* before = nullptr;
+        for (std::uint32_t child = 0; child < node.child_count; ++child) {
+            const format::PointNode& part = model_.point_tree[node.first_child + child];
+            if (part.surfel_count > kCloudPatchPoints) {
+                cut_patches(node.first_child + child);
+                before = nullptr;
+            } else if (before != nullptr &&
+                       model_.patches.back().surfel_count + part.surfel_count <= kCloudPatchPoints) {
+                model_.patches.back().surfel_count += part.surfel_count;
+            } else {
+                add_patch(part);
+                before = &part;
+            }
+        }
+    }
+
+    void add_patch(const format::PointNode& node) {
+        format::Patch patch{};
+        patch.representation = format::Representation::kSurfels;
+        patch.first_surfel = node.first_surfel;
+        patch.surfel_count = node.surfel_count;
+        patch.first_lod = static_cast<std::uint32_t>(model_.patches.size());
+        patch.lod_count = 1;
+        model_.patches.push_back(patch);
+    }
+
+    void measure_patch(std::size_t index) {
+        format::Patch& patch = model_.patches[index];
+        Box& box = bounds_[index];
+        std::vector<Vec3f> normals;
+        normals.reserve(patch.surfel_count);
+        for (std::uint32_t i = 0; i < patch.surfel_count; ++i) {
+            format::Surfel& surfel = model_.surfels[patch.first_surfel + i];
+            surfel.patch = static_cast<std::uint16_t>(index);
+            normals.push_back(stored_normal(surfel));
+            const float radius = float_from_half(surfel.radius);
+            // The extent of a disk along an axis is r sqrt(1 - n^2); widened by its rounding.
+            const Vec3f reach = (Vec3f::Ones() - normals.back().cwiseAbs2()).cwiseMax(0.0f).cwiseSqrt() * radius +
+                                Vec3f::Constant(1e-6f);
+            const Vec3f position(surfel.position[0], surfel.position[1], surfel.position[2]);
+            box.add(position - reach);
+            box.add(position + reach);
+            patch.max_surfel_radius = std::max(patch.max_surfel_radius, radius);
+            patch.max_surfel_epsilon = std::max(patch.max_surfel_epsilon, decode_extent(surfel.extent, radius).epsilon);
+        }
+        const NormalCone cone = enclose_normals(normals);
+        for (int axis = 0; axis < 3; ++axis) {
+            patch.bounds_min[axis] = box.min[axis];
+            patch.bounds_max[axis] = box.max[axis];
+            patch.cone_axis[axis] = cone.axis[axis];
+        }
+        patch.cone_cos = cone.cosine;
+    }
+
+    void add_info() {
+        format::ModelInfo& info = model_.info;
+        info.source_scale = cloud_.source_scale;
+        for (int axis = 0; axis < 3; ++axis) {
+            info.source_offset[axis] = cloud_.source_offset[axis];
+            info.bounds_min[axis] = model_.octree.front().bounds_min[axis];
+            info.bounds_max[axis] = model_.octree.front().bounds_max[axis];
+        }
+        info.flags = format::kPointCloud | format::kTwoSided;
+        if (!cloud_.colours.empty()) info.flags |= format::kHasColours;
+        info.lod_levels = 1;
+        info.source_vertices = cloud_.positions.size();
+        std::vector<float> radii(model_.surfels.size());
+        tbb::parallel_for(std::size_t{0}, radii.size(),
+                          [&](std::size_t i) { radii[i] = float_from_half(model_.surfels[i].radius); });
+        const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+        std::nth_element(radii.begin(), middle, radii.end());
+        info.median_surfel_radius = *middle;
+        for (const format::Patch& patch : model_.patches)
+            info.max_surfel_radius = std::max(info.max_surfel_radius, patch.max_surfel_radius);
+    }
+
+    const UnitCloud& cloud_;
+    const CloudSurface& surface_;
+    std::vector<Box> bounds_;
+    Model model_;
+};
+
+}  // namespace
+
+Model assemble_cloud(const UnitCloud& cloud, const CloudSurface& surface) {
+    return Assembler(cloud, surface).assemble();
+}
+
+}  // namespace splice

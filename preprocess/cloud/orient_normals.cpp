@@ -1,0 +1,216 @@
+#include "preprocess/cloud/orient_normals.h"
+
+#include "preprocess/cloud/signed_sets.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace splice {
+namespace {
+
+constexpr std::size_t kPiece = 4096;  // points; consecutive, so mostly near each other
+constexpr float kCertain = 0.8f;      // edges between parallel enough normals join a piece's points
+constexpr std::size_t kBuckets = 32;  // of certainty
+constexpr double kClosed = 0.3;       // |sum of n A| / sum of A: 0 for a closed surface, 1 for a plane
+constexpr float kParallel = 0.7f;
+
+struct Edge {
+    bool opposite;
+    float certainty;  // 0..1
+};
+
+// Nearly parallel normals: of one sheet, unless the edge leaves it. Otherwise the surface turns; on an arc, the normal
+// at one end of a chord is that at the other mirrored at the plane across the chord.
+Edge judge(const Vec3f& from, const Vec3f& to, const Vec3f& normal_a, const Vec3f& normal_b) {
+    const Vec3f along = (to - from).normalized();
+    const float cosine = normal_a.dot(normal_b);
+    const float rise = std::max(std::abs(along.dot(normal_a)), std::abs(along.dot(normal_b)));
+    if (std::abs(cosine) >= kParallel) return {cosine < 0, std::max(0.0f, std::abs(cosine) - rise / 2)};
+    const float mirrored = (normal_a - 2 * along * along.dot(normal_a)).dot(normal_b);
+    return {mirrored < 0, std::abs(mirrored) / 2};
+}
+
+struct Vote {
+    std::uint64_t pair;  // representatives of two sets, the smaller in the upper half
+    double opposite;     // certainty for opposite less that for equal signs
+};
+
+class Orienter {
+  public:
+    Orienter(std::span<const Vec3f> positions, std::span<const StoredNeighbours> neighbours, std::span<CloudDisk> disks)
+        : positions_(positions), neighbours_(neighbours), disks_(disks), set_(disks.size()) {}
+
+    OrientationStats orient() {
+        const std::size_t pieces = (disks_.size() + kPiece - 1) / kPiece;
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) { join_piece(piece); });
+        number_sets();
+        std::vector<std::vector<Vote>> votes(pieces);
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) { votes[piece] = count_votes(piece); });
+        join_sets(votes);
+        face_outward();
+        return stats_;
+    }
+
+  private:
+    Edge edge(std::size_t a, std::size_t b) const {
+        return judge(positions_[a], positions_[b], disks_[a].normal, disks_[b].normal);
+    }
+    std::size_t end_of(std::size_t piece) const { return std::min(disks_.size(), (piece + 1) * kPiece); }
+
+    // Kruskal's algorithm on the certain edges inside a piece.
+    void join_piece(std::size_t piece) {
+        const std::size_t begin = piece * kPiece, end = end_of(piece);
+        struct Candidate {
+            std::uint16_t a, b;
+            bool opposite;
+        };
+        std::array<std::vector<Candidate>, kBuckets> buckets;
+        for (std::size_t a = begin; a < end; ++a) {
+            for (const std::uint32_t b : neighbours_[a]) {
+                if (b < begin || b >= end || b == a) continue;
+                const Edge found = edge(a, b);
+                if (found.certainty < kCertain) continue;
+                const float share = (1 - found.certainty) / (1 - kCertain);
+                const auto bucket = std::min(static_cast<std::size_t>(share * kBuckets), kBuckets - 1);
+                buckets[bucket].push_back(
+                    {static_cast<std::uint16_t>(a - begin), static_cast<std::uint16_t>(b - begin), found.opposite});
+            }
+        }
+        SignedSets sets(end - begin);
+        for (const auto& bucket : buckets)
+            for (const Candidate& c : bucket)
+                sets.join(c.a, c.b, c.opposite);
+        for (std::size_t a = begin; a < end; ++a) {
+            const auto place = sets.find(static_cast<std::uint32_t>(a - begin));
+            set_[a] = static_cast<std::uint32_t>(begin + place.representative);
+            if (place.opposite) flip(a);
+        }
+    }
+
+    // From representatives to consecutive numbers; a representative is the first point of its set.
+    void number_sets() {
+        for (std::size_t a = 0; a < set_.size(); ++a)
+            set_[a] = set_[a] == a ? sets_++ : set_[set_[a]];
+    }
+
+    std::vector<Vote> count_votes(std::size_t piece) const {
+        std::vector<Vote> votes;
+        for (std::size_t a = piece * kPiece; a < end_of(piece); ++a) {
+            for (const std::uint32_t b : neighbours_[a]) {
+                if (set_[a] == set_[b]) continue;
+                const auto [low, high] = std::minmax(set_[a], set_[b]);
+                const Edge found = edge(a, b);
+                const auto weight = static_cast<double>(found.certainty);
+                votes.push_back({std::uint64_t{low} << 32 | high, found.opposite ? weight : -weight});
+            }
+        }
+        return summed(std::move(votes));
+    }
+
+    static std::vector<Vote> summed(std::vector<Vote> votes) {
+        std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.pair < b.pair; });
+        std::vector<Vote> sums;
+        for (const Vote& vote : votes) {
+            if (sums.empty() || sums.back().pair != vote.pair) {
+                sums.push_back(vote);
+            } else {
+                sums.back().opposite += vote.opposite;
+            }
+        }
+        return sums;
+    }
+
+    // The pairs with the clearest votes first.
+    void join_sets(const std::vector<std::vector<Vote>>& votes_of_pieces) {
+        std::vector<Vote> votes;
+        for (const auto& part : votes_of_pieces)
+            votes.insert(votes.end(), part.begin(), part.end());
+        votes = summed(std::move(votes));
+        std::stable_sort(votes.begin(), votes.end(),
+                         [](const Vote& a, const Vote& b) { return std::abs(a.opposite) > std::abs(b.opposite); });
+        SignedSets components(sets_);
+        for (const Vote& vote : votes)
+            components.join(static_cast<std::uint32_t>(vote.pair >> 32), static_cast<std::uint32_t>(vote.pair),
+                            vote.opposite > 0);
+        place_.reserve(sets_);
+        for (std::uint32_t set = 0; set < sets_; ++set)
+            place_.push_back(components.find(set));
+    }
+
+    struct Component {
+        double area = 0;
+        Vec3d centre = Vec3d::Zero(), normal = Vec3d::Zero();  // sums, weighted by area
+        double outward = 0;
+    };
+
+    double area_of(std::size_t point) const {
+        const auto radius = static_cast<double>(disks_[point].radius);
+        return radius * radius;
+    }
+
+    void face_outward() {
+        std::vector<Component> components(sets_);
+        const auto component_of = [&](std::size_t point) -> Component& {
+            return components[place_[set_[point]].representative];
+        };
+        const auto normal_of = [&](std::size_t point) {
+            const Vec3d normal = disks_[point].normal.cast<double>();
+            return Vec3d(place_[set_[point]].opposite ? Vec3d(-normal) : normal);
+        };
+        for (std::size_t point = 0; point < disks_.size(); ++point) {
+            Component& component = component_of(point);
+            component.area += area_of(point);
+            component.centre += positions_[point].cast<double>() * area_of(point);
+            component.normal += normal_of(point) * area_of(point);
+        }
+        for (std::size_t point = 0; point < disks_.size(); ++point) {
+            Component& component = component_of(point);
+            component.outward +=
+                normal_of(point).dot(positions_[point].cast<double>() - component.centre / component.area) *
+                area_of(point);
+        }
+        std::vector<char> inward(sets_, 0);
+        for (std::uint32_t set = 0; set < sets_; ++set) {
+            const Component& component = components[set];
+            if (place_[set].representative != set) continue;
+            ++stats_.components;
+            Vec3d::Index axis = 0;
+            component.normal.cwiseAbs().maxCoeff(&axis);
+            const bool closed = component.normal.norm() < kClosed * component.area;
+            inward[set] = (closed ? component.outward : component.normal[axis]) < 0;
+        }
+        for (std::size_t point = 0; point < disks_.size(); ++point) {
+            const SignedSets::Place place = place_[set_[point]];
+            if (place.opposite == (inward[place.representative] != 0)) continue;
+            flip(point);
+            ++stats_.flipped_normals;
+        }
+    }
+
+    void flip(std::size_t point) {
+        CloudDisk& disk = disks_[point];
+        disk.normal = -disk.normal;
+        std::swap(disk.above, disk.below);
+    }
+
+    std::span<const Vec3f> positions_;
+    std::span<const StoredNeighbours> neighbours_;
+    std::span<CloudDisk> disks_;
+    std::vector<std::uint32_t> set_;  // of each point: its representative, later its number
+    std::uint32_t sets_ = 0;
+    std::vector<SignedSets::Place> place_;  // of each set in its component
+    OrientationStats stats_;
+};
+
+}  // namespace
+
+OrientationStats orient_normals(std::span<const Vec3f> positions, std::span<const StoredNeighbours> neighbours,
+                                std::span<CloudDisk> disks) {
+    return Orienter(positions, neighbours, disks).orient();
+}
+
+}  // namespace splice

@@ -1,0 +1,22 @@
+// The point octree of a cloud (Pajarola et al. 2004, section 3.2): a node's points are divided among up to eight
+// children by the octant they lie in about their mean, so the tree follows the points rather than space. Each node
+// stands for all below it: an elliptical splat that covers their disks' projections, a sphere that holds the disks, a
+// cone that holds their normals. Where the paper's bounds of a node come from the points, these do up to some thousand
+// points; above, from its children's, which costs no more than a walk over the nodes.
+#pragma once
+
+#include "preprocess/model_format/model_format.h"
+
+#include <vector>
+
+namespace splice {
+
+/// A leaf has no more surfels.
+inline constexpr std::uint32_t kPointLeaf = 16;
+
+/// Brings the surfels into the order of the tree (each node's are contiguous) and returns its nodes, as
+/// format::SectionKind::kPointTree. The surfels' patches are not looked at. Nothing for no surfels. Deterministic for
+/// any thread count. Fewer than 2^32 - 1 surfels.
+std::vector<format::PointNode> build_point_octree(std::vector<format::Surfel>& surfels);
+
+}  // namespace splice

@@ -1,0 +1,97 @@
+#include "preprocess/lod/split_points.h"
+
+#include "preprocess/lod/point_octree.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <numeric>
+
+namespace splice {
+namespace {
+
+using Counts = std::array<std::uint32_t, 8>;
+
+class Splitter {
+  public:
+    explicit Splitter(std::span<const format::Surfel> surfels) : surfels_(surfels), scratch_(surfels.size()) {
+        split_.order.resize(surfels.size());
+        std::iota(split_.order.begin(), split_.order.end(), 0u);
+    }
+
+    // Level by level: the nodes of one in parallel, then their children in the order of their parents.
+    PointSplit split() {
+        split_.nodes.push_back(node_over(0, static_cast<std::uint32_t>(surfels_.size())));
+        split_.level_begin = {0, 1};
+        for (;;) {
+            const std::uint32_t begin = split_.level_begin.end()[-2], end = split_.level_begin.end()[-1];
+            std::vector<Counts> counts(end - begin);
+            tbb::parallel_for(begin, end, [&](std::uint32_t node) { counts[node - begin] = partition(node); });
+            for (std::uint32_t node = begin; node < end; ++node)
+                add_children(node, counts[node - begin]);
+            if (split_.nodes.size() == end) return std::move(split_);
+            split_.level_begin.push_back(static_cast<std::uint32_t>(split_.nodes.size()));
+        }
+    }
+
+  private:
+    static format::PointNode node_over(std::uint32_t first, std::uint32_t count) {
+        format::PointNode node{};
+        node.first_surfel = first;
+        node.surfel_count = count;
+        return node;
+    }
+
+    // Sorts the node's range by octant about its mean; how many each octant got. None for a leaf.
+    Counts partition(std::uint32_t index) {
+        const format::PointNode& node = split_.nodes[index];
+        Counts counts{};
+        if (node.surfel_count <= kPointLeaf) return counts;
+        const std::span<std::uint32_t> range = std::span(split_.order).subspan(node.first_surfel, node.surfel_count);
+        const std::span<std::uint32_t> sorted = std::span(scratch_).subspan(node.first_surfel, node.surfel_count);
+        Vec3d mean = Vec3d::Zero();
+        for (const std::uint32_t surfel : range)
+            mean += position_of(surfels_[surfel]);
+        mean /= static_cast<double>(range.size());
+        const auto octant = [&](std::uint32_t surfel) {
+            const Vec3d p = position_of(surfels_[surfel]);
+            return (p.x() > mean.x() ? 1u : 0u) | (p.y() > mean.y() ? 2u : 0u) | (p.z() > mean.z() ? 4u : 0u);
+        };
+        for (const std::uint32_t surfel : range)
+            ++counts[octant(surfel)];
+        for (const std::uint32_t count : counts) {
+            // The mean does not separate points that rounding has made one: any halves will do.
+            if (count != node.surfel_count) continue;
+            return {count / 2, count - count / 2};
+        }
+        std::array<std::uint32_t, 8> next{};
+        std::exclusive_scan(counts.begin(), counts.end(), next.begin(), 0u);
+        for (const std::uint32_t surfel : range)
+            sorted[next[octant(surfel)]++] = surfel;
+        std::copy(sorted.begin(), sorted.end(), range.begin());
+        return counts;
+    }
+
+    void add_children(std::uint32_t index, const Counts& counts) {
+        std::uint32_t first = split_.nodes[index].first_surfel;
+        for (const std::uint32_t count : counts) {
+            if (count == 0) continue;
+            format::PointNode& node = split_.nodes[index];
+            if (node.child_count++ == 0) node.first_child = static_cast<std::uint32_t>(split_.nodes.size());
+            split_.nodes.push_back(node_over(first, count));
+            first += count;
+        }
+    }
+
+    std::span<const format::Surfel> surfels_;
+    std::vector<std::uint32_t> scratch_;
+    PointSplit split_;
+};
+
+}  // namespace
+
+PointSplit split_points(std::span<const format::Surfel> surfels) {
+    return Splitter(surfels).split();
+}
+
+}  // namespace splice

@@ -1,0 +1,25 @@
+// The shape of a point octree: which surfels are in which node.
+#pragma once
+
+#include "preprocess/mesh/indexed_mesh.h"
+#include "preprocess/model_format/model_format.h"
+
+#include <span>
+#include <vector>
+
+namespace splice {
+
+struct PointSplit {
+    std::vector<std::uint32_t> order;        // new place -> old
+    std::vector<format::PointNode> nodes;    // breadth first; only ranges and children are filled in
+    std::vector<std::uint32_t> level_begin;  // nodes of level l are [level_begin[l], level_begin[l + 1])
+};
+
+PointSplit split_points(std::span<const format::Surfel> surfels);
+
+inline Vec3d position_of(const format::Surfel& surfel) {
+    return {static_cast<double>(surfel.position[0]), static_cast<double>(surfel.position[1]),
+            static_cast<double>(surfel.position[2])};
+}
+
+}  // namespace splice

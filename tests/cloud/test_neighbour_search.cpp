@@ -1,0 +1,93 @@
+#include "preprocess/cloud/neighbour_search.h"
+#include "preprocess/cloud/unit_cloud.h"
+#include "tests/cloud/cloud_shapes.h"
+
+#include <catch2/catch.hpp>
+#include <nanoflann.hpp>
+
+using namespace splice;
+using namespace splice::test;
+
+namespace {
+
+struct Points {
+    const std::vector<Vec3f>& points;
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    float kdtree_get_pt(std::size_t point, std::size_t axis) const {
+        return points[point][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
+    }
+};
+using KdTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>, Points, 3, std::uint32_t>;
+
+// The same distances as a kd-tree's, each index once and never the point itself.
+void check_against_kd_tree(const std::vector<Vec3f>& points, unsigned k) {
+    const Points adaptor{points};
+    const KdTree tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12));
+    const NeighbourSearch search(points);
+    NeighbourSearch::Lists lists;
+    std::vector<std::uint32_t> indices(k + 1);
+    std::vector<float> distances(k + 1);
+    std::size_t wrong = 0;
+    for (std::size_t point = 0; point < points.size(); ++point) {
+        if (point % NeighbourSearch::kBlock == 0) search.find(point / NeighbourSearch::kBlock, k, lists);
+        const auto found = lists.of(point % NeighbourSearch::kBlock);
+        const std::size_t expected = tree.knnSearch(points[point].data(), k + 1, indices.data(), distances.data()) - 1;
+        std::vector<std::uint32_t> own;
+        for (std::size_t i = 0; i < k; ++i) {
+            if (i >= expected) {
+                wrong += found[i] != kNoNeighbour;
+                continue;
+            }
+            // The kd-tree finds the point itself first.
+            wrong += std::abs(squared_distance_of(found[i]) - distances[i + 1]) > 1e-6f * distances[i + 1];
+            wrong += index_of(found[i]) == point;
+            wrong += i > 0 && !(found[i - 1] < found[i]);
+            own.push_back(index_of(found[i]));
+        }
+        std::sort(own.begin(), own.end());
+        wrong += std::adjacent_find(own.begin(), own.end()) != own.end();
+    }
+    CHECK(wrong == 0);
+}
+
+}  // namespace
+
+TEST_CASE("neighbours are those that a kd-tree finds") {
+    check_against_kd_tree(unit_cloud(sphere_points(20000, 1)).positions, 16);
+    check_against_kd_tree(unit_cloud(sphere_points(3000, 2)).positions, 1);
+    check_against_kd_tree(unit_cloud(sphere_points(3000, 2)).positions, 40);
+    // In any order, and of any number up to a block's.
+    check_against_kd_tree(sphere_points(2000, 3), 8);
+    for (std::size_t points = 1; points <= 35; ++points)
+        check_against_kd_tree(unit_cloud(sphere_points(points, 4)).positions, 16);
+}
+
+TEST_CASE("neighbours on a lattice, where most distances are equal, come by their index") {
+    std::vector<Vec3f> lattice;
+    for (int z = 0; z < 4; ++z)
+        for (int y = 0; y < 10; ++y)
+            for (int x = 0; x < 10; ++x)
+                lattice.emplace_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+    const NeighbourSearch search(lattice);
+    NeighbourSearch::Lists lists;
+    search.find(0, 3, lists);
+    std::vector<std::uint32_t> found;
+    for (const Neighbour neighbour : lists.of(5))  // point (5, 0, 0)
+        found.push_back(index_of(neighbour));
+    CHECK(found == std::vector<std::uint32_t>{4, 6, 15});
+}
+
+TEST_CASE("only the points that are asked for are searched") {
+    const std::vector<Vec3f> points = unit_cloud(sphere_points(500, 5)).positions;
+    const NeighbourSearch search(points);
+    NeighbourSearch::Lists all, one;
+    search.find(3, 16, all);
+    search.find(3, 16, one, 1u << 7);
+    CHECK(std::equal(all.of(7).begin(), all.of(7).end(), one.of(7).begin()));
+    CHECK(one.of(6).front() == kNoNeighbour);
+}

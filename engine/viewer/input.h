@@ -13,13 +13,13 @@ enum class Button : int { kLeft = 0, kRight = 1, kMiddle = 2 };
 enum Modifiers : int { kShift = 1, kControl = 2, kAlt = 4 };
 
 struct InputEvent {
-    enum class Kind { kCursor, kButton, kWheel, kKey, kText, kDrop };
+    enum class Kind { kCursor, kButton, kWheel, kKey, kText, kDrop, kFocus };
     Kind kind = Kind::kCursor;
-    double time = 0;      // seconds
-    double x = 0, y = 0;  // cursor, button: where, in window coordinates; wheel: notches
-    int code = 0;         // button; key (GLFW's number); text: the code point
-    int scancode = 0;     // key
-    bool pressed = false;
+    double time = 0;       // seconds
+    double x = 0, y = 0;   // cursor, button: where, in window coordinates; wheel: notches
+    int code = 0;          // button; key (GLFW's number); text: the code point
+    int scancode = 0;      // key
+    bool pressed = false;  // button, key; focus: gained
     bool repeated = false;
     int modifiers = 0;                         // Modifiers
     std::vector<std::filesystem::path> files;  // dropped

@@ -100,6 +100,11 @@ void Interface::handle(const InputEvent& event) {
         case InputEvent::Kind::kText:
             io.AddInputCharacter(static_cast<unsigned int>(event.code));
             break;
+        case InputEvent::Kind::kFocus:
+            // What is let go elsewhere is not seen here.
+            std::fill(std::begin(buttons_), std::end(buttons_), false);
+            std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+            break;
         case InputEvent::Kind::kDrop:
             break;
     }

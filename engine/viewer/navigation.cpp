@@ -41,6 +41,9 @@ bool Navigation::handle(const InputEvent& event, const PictureArea& area, Camera
         }
         case InputEvent::Kind::kKey:
             return key(event, area, camera);
+        case InputEvent::Kind::kFocus:
+            release_all();
+            return true;
         case InputEvent::Kind::kText:
         case InputEvent::Kind::kDrop:
             break;

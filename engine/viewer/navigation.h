@@ -34,10 +34,10 @@ class Navigation {
     bool dragging() const { return button_.has_value(); }
     /// The place of a click (down and up without a drag) since the last call.
     std::optional<glm::dvec2> take_click();
-    /// Keys and buttons go up unseen when a window loses them.
-    void release_all();
 
   private:
+    /// Keys and buttons go up unseen when a window loses them.
+    void release_all();
     bool press(const InputEvent& event, const PictureArea& area, CameraController& camera, const Surface& surface);
     bool move(const InputEvent& event, const PictureArea& area, CameraController& camera);
     bool key(const InputEvent& event, const PictureArea& area, CameraController& camera);

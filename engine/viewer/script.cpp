@@ -111,19 +111,22 @@ bool fits(const Action& action, const Words& arguments) {
     return true;
 }
 
-// Words are separated by blanks; in double quotes, blanks belong to the word.
+// Words are separated by blanks; in double quotes, blanks belong to the word. A # starts a comment at the start of a
+// line and before a blank; #ff8000 is a colour.
 Words words_of(std::string_view line) {
     Words words;
     std::string word;
     bool quoted = false, open = false;
-    for (const char c : line) {
+    const auto is_blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
         if (c == '"') {
             quoted = !quoted;
             open = true;
-        } else if (!quoted && std::isspace(static_cast<unsigned char>(c)) != 0) {
+        } else if (!quoted && is_blank(c)) {
             if (open) words.push_back(std::exchange(word, ""));
             open = false;
-        } else if (!quoted && !open && c == '#') {
+        } else if (!quoted && !open && c == '#' && (words.empty() || i + 1 == line.size() || is_blank(line[i + 1]))) {
             return words;
         } else {
             word += c;

@@ -127,7 +127,7 @@ void Viewer::loop() {
         window_.wait(idle_seconds());
         const double before = now_;
         now_ = Window::now();
-        if (!window_.events().empty()) redraw_ = kFramesToSettle;
+        if (!window_.events().empty() || window_.take_damage()) redraw_ = kFramesToSettle;
         play_script();
         std::move(window_.events().begin(), window_.events().end(), std::back_inserter(input_));
         window_.events().clear();
@@ -135,7 +135,6 @@ void Viewer::loop() {
         if (state_.navigation.advance(std::min(now_ - before, kLongestSeconds), state_.camera)) moved_at_ = now_;
         poll_job();
         poll_shaders();
-        update_title();
         const VkExtent2D pixels = window_.pixels();
         if (pixels.width == 0 || pixels.height == 0) {
             window_.wait(kIdleSeconds / 10);  // nothing can be shown; not to spin
@@ -152,6 +151,7 @@ void Viewer::loop() {
         advance_turntable();
         draw_pictures();
         show_window();
+        update_title();
         const double frame = Window::now() - now_;
         if (frame > 0) {
             // A running mean over some ten frames.
@@ -210,6 +210,9 @@ void Viewer::handle(const InputEvent& event) {
         }
         case InputEvent::Kind::kText:
             return;
+        case InputEvent::Kind::kFocus:
+            dragging_divider_ = false;
+            break;
         case InputEvent::Kind::kKey:
             if (event.pressed && (interface_.wants_keyboard() || handle_key(event))) return;
             break;

@@ -69,7 +69,16 @@ struct Window::Callbacks {
         for (int i = 0; i < count; ++i)
             event.files.emplace_back(paths[i]);
     }
-    static void scale(GLFWwindow* window, float x, float y) { of(window).content_scale_ = std::max({x, y, 1.0F}); }
+    static void focus(GLFWwindow* window, int gained) {
+        add(window, InputEvent::Kind::kFocus).pressed = gained == GLFW_TRUE;
+    }
+    static void refresh(GLFWwindow* window) { of(window).damaged_ = true; }
+    static void size(GLFWwindow* window, int, int) { of(window).damaged_ = true; }
+    static void iconify(GLFWwindow* window, int) { of(window).damaged_ = true; }
+    static void scale(GLFWwindow* window, float x, float y) {
+        of(window).content_scale_ = std::max({x, y, 1.0F});
+        of(window).damaged_ = true;
+    }
 };
 
 Window::Window(const WindowOptions& options) : title_(options.title) {
@@ -95,6 +104,10 @@ Window::Window(const WindowOptions& options) : title_(options.title) {
     glfwSetCharCallback(window_, Callbacks::text);
     glfwSetDropCallback(window_, Callbacks::drop);
     glfwSetWindowContentScaleCallback(window_, Callbacks::scale);
+    glfwSetWindowFocusCallback(window_, Callbacks::focus);
+    glfwSetWindowRefreshCallback(window_, Callbacks::refresh);
+    glfwSetFramebufferSizeCallback(window_, Callbacks::size);
+    glfwSetWindowIconifyCallback(window_, Callbacks::iconify);
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
     Callbacks::scale(window_, x, y);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct GLFWwindow;
@@ -46,6 +47,8 @@ class Window {
     /// Fills events(); waits for one at most so long (0: not at all).
     void wait(double seconds);
     InputQueue& events() { return events_; }
+    /// Whether the window has to be drawn again since the last call: uncovered, or of another size.
+    bool take_damage() { return std::exchange(damaged_, false); }
     static double now();  // seconds, the clock of the events
 
   private:
@@ -53,6 +56,7 @@ class Window {
     GLFWwindow* window_ = nullptr;
     InputQueue events_;
     double content_scale_ = 1;
+    bool damaged_ = true;
     std::string title_;
 };
 

@@ -59,7 +59,7 @@ class Sender {
                 XNextEvent(display_, &event);
                 if (event.type == SelectionRequest) give(event.xselectionrequest);
                 if (event.type == ClientMessage && event.xclient.message_type == atom(answer))
-                    return (event.xclient.data.l[1] & 1) != 0;  // accepted
+                    return event.xclient.data.l[1] != 0;  // bit 0 by the protocol; GLFW puts a count of bytes there
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }

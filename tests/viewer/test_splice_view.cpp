@@ -7,7 +7,6 @@
 #include "tests/viewer/virtual_display.h"
 
 #include <catch2/catch.hpp>
-
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,11 +36,12 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 
 // A mesh that is neither flat nor symmetric, so that turning it shows.
 void write_mesh_file(const std::filesystem::path& path, std::uint32_t segments = 60) {
-    write_ply(torus_knot(2, 3, segments, 12), path);
+    write_ply(shapes::torus_knot(2, 3, segments, 12), path);
 }
 
 void write_model_file(const std::filesystem::path& mesh, const std::filesystem::path& model) {
-    const test::Outcome baked = test::run({test::program("splice-bake"), {mesh.string(), "-o", model.string(), "--quiet"}});
+    const test::Outcome baked = test::run(
+        {test::program("splice-bake"), {mesh.string(), "-o", model.string(), "--triangle-share", "0.4", "--quiet"}});
     REQUIRE(baked.exit_code == 0);
 }
 
@@ -104,7 +104,8 @@ Picture captured_by(const std::filesystem::path& folder, const std::filesystem::
     REQUIRE(command.starts_with("splice-capture "));
     const std::string path = test::program("splice-capture").parent_path().string();
     const test::Outcome outcome =
-        test::run({"/bin/sh", {"-c", "PATH='" + path + "':$PATH; " + command.substr(0, command.find('\n')) + " --quiet"},
+        test::run({"/bin/sh",
+                   {"-c", "PATH='" + path + "':$PATH; " + command.substr(0, command.find('\n')) + " --quiet"},
                    folder});
     INFO(command << outcome.err);
     REQUIRE(outcome.exit_code == 0);
@@ -197,8 +198,8 @@ TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, s
     SECTION("files") {
         write_text(folder / "broken.ply", "ply\nformat nonsense\n");
         REQUIRE(display->drop(folder / "broken.ply", 600, 300));
-        const Picture with_message = display->picture_when(
-            [&](const Picture& now) { return difference(scene_part(now), scene) > 0.005; });
+        const Picture with_message =
+            display->picture_when([&](const Picture& now) { return difference(scene_part(now), scene) > 0.005; });
         CHECK(difference(scene_part(with_message), scene) > 0.005);
         CHECK(display->title() == "knot.splice - splice-view");
         display->key("Escape");
@@ -261,8 +262,9 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
                "bookmark here\nkey 1\ngo here\nwait\nscreenshot again.png\nsave-scene saved.json\n"
                "turntable 3 turn.png\nwait\n"
                "click left 650 330\nframes 20\nquit\n");
-    RunningViewer viewer(folder.path(), display->name(),
-                         {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700", "--script", "tour.txt"});
+    RunningViewer viewer(
+        folder.path(), display->name(),
+        {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700", "--script", "tour.txt"});
     REQUIRE(viewer.wait() == 0);
     CHECK(viewer.err() == "");
     for (const char* name : {"turned", "depth", "side"}) {
@@ -279,8 +281,10 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
     CHECK(difference(read_png(folder / "turn-001.png"), read_png(folder / "turn-002.png")) > 0.02);
 
     // The saved scene shows what the window showed.
-    const test::Outcome outcome = test::run(
-        {test::program("splice-capture"), {"saved.json", "-o", "saved.png", "--backend", "auto", "--show", "triangles"}, folder.path()});
+    const test::Outcome outcome =
+        test::run({test::program("splice-capture"),
+                   {"saved.json", "-o", "saved.png", "--backend", "auto", "--show", "triangles"},
+                   folder.path()});
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     CHECK(difference(read_png(folder / "saved.png"), read_png(folder / "side.png")) == 0);
@@ -295,8 +299,9 @@ TEST_CASE("a lost device is opened again once; the second loss ends the run") {
     const std::vector<std::string> arguments{"knot.ply", "--device", "cpu", "--size", "800x600", "--script", "-"};
     const auto run = [&](const std::string& script) {
         write_text(folder / "script.txt", script);
-        RunningViewer viewer(folder.path(), display->name(),
-                             {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
+        RunningViewer viewer(
+            folder.path(), display->name(),
+            {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
         const int code = viewer.wait();
         return std::pair{code, viewer.err()};
     };
@@ -330,9 +335,8 @@ TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves
     const test::TemporaryFolder folder;
     write_mesh_file(folder / "knot.ply", 40);
     std::filesystem::copy(test::source_file("shaders/glsl"), folder / "glsl", std::filesystem::copy_options::recursive);
-    RunningViewer viewer(
-        folder.path(), display->name(),
-        {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--shaders", "glsl"});
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--shaders", "glsl"});
     REQUIRE(display->find_window());
     REQUIRE(display->wait_for_title("knot.ply - splice-view"));
     const Picture before = display->still_picture();

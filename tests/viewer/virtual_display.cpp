@@ -180,7 +180,7 @@ Picture VirtualDisplay::picture_when(const std::function<bool(const Picture&)>& 
     const auto start = Clock::now();
     Picture last = picture();
     // Longer than the viewer takes to draw a moving picture whole again.
-    constexpr int still_for = 4;
+    constexpr int still_for = 6;
     int still = 0;
     while (since(start) < seconds) {
         sleep_seconds(0.2);

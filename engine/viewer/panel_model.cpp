@@ -44,7 +44,7 @@ void edit_bake(PanelContext& context) {
             bake.sampling.thesis_c.reset();
             // As a count along the longest side: 1 / h_max.
             auto count = static_cast<float>(1 / bake.sampling.h_max);
-            if (ImGui::SliderFloat("Finest", &count, 8, 512, "1/%.0f",
+            if (ImGui::SliderFloat("Spacing", &count, 8, 512, "1/%.0f",
                                    ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
                 bake.sampling.h_max = 1 / static_cast<double>(count);
             if (ImGui::IsItemHovered())

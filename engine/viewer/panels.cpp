@@ -28,7 +28,8 @@ void draw_progress(const SceneJob::Progress& progress, const Layout& layout) {
 void draw_messages(PanelContext& context, const Layout& layout) {
     if (context.state.messages.empty()) return;
     const float width = std::min(560.0F, layout.width - layout.panel_width - 20);
-    ImGui::SetNextWindowPos({layout.panel_width + 10, layout.height - layout.status_height - 10}, 0, {0, 1});
+    // Below the progress bar, clear of the render graph.
+    ImGui::SetNextWindowPos({layout.panel_width + 10, 56});
     ImGui::SetNextWindowSize({width, 0});
     ImGui::Begin("messages", nullptr, kFixed | ImGuiWindowFlags_NoFocusOnAppearing);
     for (const Message& message : context.state.messages) {

@@ -350,6 +350,7 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
     state_.camera.set_bounds(bounds);
     state_.picked.reset();
     if (!request.keep_camera) {
+        state_.bake = BakeOptions{};
         const Viewport viewport = area(0).size;
         state_.camera.set_camera(description.camera
                                      ? *description.camera

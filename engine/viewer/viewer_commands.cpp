@@ -109,7 +109,6 @@ void Viewer::open(std::vector<std::filesystem::path> paths, bool again) {
     // One core stays with the window.
     request.options.threads = static_cast<int>(std::max(std::thread::hardware_concurrency(), 2U) - 1);
     if (again) request.options.bake = state_.bake;
-    if (!again) state_.bake = BakeOptions{};
     job_ = std::make_unique<SceneJob>(std::move(request));
 }
 

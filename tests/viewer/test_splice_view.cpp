@@ -86,6 +86,7 @@ class RunningViewer {
         }
         return -1;
     }
+    pid_t process() const { return process_; }
     std::string err() const { return read_text(folder_ / "err.txt"); }
     std::string out() const { return read_text(folder_ / "out.txt"); }
 
@@ -356,6 +357,59 @@ TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves
     CHECK(difference(cropped(before, 240, 0, 500, 500), cropped(after, 240, 0, 500, 500)) == 0);
     display->ask_to_close();
     CHECK(viewer.wait() == 0);
+}
+
+namespace {
+
+std::uint64_t resident_kilobytes(pid_t process) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    for (std::string word; status >> word;) {
+        if (word != "VmRSS:") continue;
+        std::uint64_t kilobytes = 0;
+        status >> kilobytes;
+        return kilobytes;
+    }
+    return 0;
+}
+
+// Memory that frames of a moving camera leave behind, in kilobytes.
+std::int64_t growth_over(int frames) {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return 0;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply", 40);
+    std::string script = "wait\npress left\n";
+    const auto turn = [&](int count) {
+        for (int i = 0; i < count; ++i)
+            script += "move " + std::to_string(260 + i % 7 * 5) + " " + std::to_string(100 + i % 11 * 3) + "\n";
+    };
+    // The first frames make what later ones use again: resolutions, panels, lists.
+    turn(200);
+    script += "screenshot before.png\n";
+    turn(frames);
+    script += "screenshot after.png\nframes 1000000\n";
+    write_text(folder / "script.txt", script);
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.ply", "--device", "cpu", "--size", "420x300", "--script", "script.txt"});
+    const auto memory_at = [&](const char* picture) {
+        for (int i = 0; i < 40000 && !std::filesystem::exists(folder / picture); ++i)
+            usleep(20000);
+        REQUIRE(std::filesystem::exists(folder / picture));
+        return static_cast<std::int64_t>(resident_kilobytes(viewer.process()));
+    };
+    const std::int64_t before = memory_at("before.png");
+    REQUIRE(before > 0);
+    return memory_at("after.png") - before;
+}
+
+}  // namespace
+
+TEST_CASE("frames of a moving camera leave no memory behind") {
+    CHECK(growth_over(400) < 4096);
+}
+
+TEST_CASE("ten thousand frames of a moving camera leave no memory behind", "[.long]") {
+    CHECK(growth_over(10000) < 4096);
 }
 
 TEST_CASE("usage: what is not understood ends the run with 2 before a window opens") {

@@ -20,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::array kStages{"read", "repair", "cluster", "simplify", "sample", "prune", "assemble", "write", "total"};
+constexpr std::array kStages{"read",   "repair", "cluster",  "judge", "simplify",
+                             "sample", "prune",  "assemble", "write", "total"};
 
 class ScratchFolder {
   public:

@@ -59,6 +59,7 @@ std::string stats_json(const BakeStats& stats, const BakeResult& result) {
     json["seconds"] = {{"read", stats.seconds_read},
                        {"repair", stats.seconds_repair},
                        {"cluster", stats.seconds_cluster},
+                       {"judge", stats.cluster.seconds_judge},
                        {"simplify", stats.seconds_simplify},
                        {"sample", stats.seconds_sample},
                        {"prune", stats.seconds_prune},

@@ -48,6 +48,7 @@ Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats
     const PatchSet patches = timed(progress, "cluster", stats.seconds_cluster,
                                    [&] { return cluster_mesh(mesh, options.cluster, progress); });
     stats.cluster = patches.stats;
+    stats.seconds_cluster -= patches.stats.seconds_judge;
 
     RenderVertices vertices;
     const PatchLods lods = timed(progress, "simplify", stats.seconds_simplify, [&] {

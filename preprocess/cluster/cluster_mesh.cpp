@@ -211,24 +211,22 @@ void run_phase_two(const Settings& settings, Clusters& clusters, const Tick& tic
 
 PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, const Progress& progress) {
     check(options);
-    Stopwatch watch;
     Surface surface = measure_surface(mesh, options);
     const Settings& settings = surface.settings;
     Clusters clusters(surface);
-    double seconds_selection = watch.lap(), seconds_phase1 = 0, seconds_phase2 = 0;
 
     const auto tick = [&](std::size_t) {
         const auto merged = static_cast<double>(clusters.graph.tree().size());
         if (progress) progress("cluster", merged / static_cast<double>(surface.faces.size()));
     };
+    Stopwatch watch;
+    double seconds_contraction = 0;
     const auto contract_clusters = [&] {
-        Stopwatch phase_watch;
+        Stopwatch contraction;
         run_phase_one(mesh, surface, clusters, tick);
-        seconds_phase1 = phase_watch.lap();
         if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
-        seconds_selection += phase_watch.lap();
         if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
-        seconds_phase2 = phase_watch.lap();
+        seconds_contraction = contraction.lap();
     };
     // Contraction is one chain of dependent merges; another thread measures meanwhile what its outcome is judged by.
     std::vector<JudgedPlace> places;
@@ -238,13 +236,12 @@ PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, co
         },
         contract_clusters);
     if (progress) progress("cluster", 1.0);
+    const double seconds_waited = std::max(0.0, watch.lap() - seconds_contraction);
 
-    watch.lap();
     PatchSet set = assemble_patches(mesh, surface.faces, clusters.graph, clusters.surfel);
+    watch.lap();
     set.stats.selection_auc = selection_auc(places, set);
-    set.stats.seconds_phase1 = seconds_phase1;
-    set.stats.seconds_phase2 = seconds_phase2;
-    set.stats.seconds_selection = seconds_selection + watch.lap();
+    set.stats.seconds_judge = seconds_waited + watch.lap();
     return set;
 }
 

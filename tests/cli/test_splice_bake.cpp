@@ -118,7 +118,7 @@ TEST_CASE("splice-bake --stats writes every promised figure, and they agree with
     CHECK(json.at("selection").at("auc") >= 0.0);
     CHECK(json.at("selection").at("auc") <= 1.0);
     double sum = 0;
-    for (const char* key : {"read", "repair", "cluster", "simplify", "sample", "prune", "write"}) {
+    for (const char* key : {"read", "repair", "cluster", "judge", "simplify", "sample", "prune", "write"}) {
         CHECK(json.at("seconds").at(key) >= 0.0);
         sum += json.at("seconds").at(key).get<double>();
     }

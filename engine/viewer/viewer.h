@@ -44,6 +44,8 @@ class Viewer {
         std::unique_ptr<InterfaceDrawing> interface;  // made anew when fonts change
         std::array<Pane, 2> panes;
     };
+    static constexpr int kFramesToSettle = 3;  // that the interface needs after an event
+
     /// A picture a frame, so that the window stays usable.
     struct Turntable {
         std::filesystem::path path;

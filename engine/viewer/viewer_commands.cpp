@@ -88,7 +88,7 @@ void Viewer::report(const std::string& text, bool error) {
     constexpr std::size_t most = 6;
     if (state_.messages.size() >= most) state_.messages.erase(state_.messages.begin());
     state_.messages.push_back({text, error});
-    redraw_ = 3;
+    redraw_ = kFramesToSettle;
 }
 
 std::filesystem::path Viewer::first_input() const {

@@ -127,7 +127,9 @@ std::string write_scene(const SceneDescription& scene, const std::filesystem::pa
                       {"view", kViewNames[static_cast<std::size_t>(scene.view)].name},
                       {"sides", sides[static_cast<int>(scene.sides)]},
                       {"epsilon_scale", scene.epsilon_scale},
-                      {"prefilter", scene.prefilter}};
+                      {"prefilter", scene.prefilter},
+                      {"shading", name_of(scene.shading)},
+                      {"antialias", scene.antialias}};
     for (const CameraBookmark& bookmark : scene.bookmarks)
         json["bookmarks"].push_back({{"name", bookmark.name}, {"camera", json_of(bookmark.camera)}});
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

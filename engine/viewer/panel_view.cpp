@@ -99,6 +99,7 @@ void draw_view_section(PanelContext& context) {
     choose("View", kViewNames, look.view, &ViewName::view);
     choose("Show", kShownNames, look.shown, &ShownName::shown);
     choose("Backend", kBackendNames, look.backend, &BackendName::backend);
+    choose("Shading", kShadingNames, look.shading, &ShadingName::shading);
     choose("Sides", kSidesNames, look.sides, &SidesName::sides);
     edit_number("Epsilon", look.epsilon_scale, 0, 4);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("How far surfels may lie behind one another and still blend");

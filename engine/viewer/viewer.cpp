@@ -223,6 +223,8 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
             look.sides = description.sides;
             look.epsilon_scale = description.epsilon_scale;
             look.prefilter = description.prefilter;
+            look.shading = description.shading;
+            look.antialias = description.antialias;
         }
     } else if (state_.scene) {
         // The same scene, baked anew: what was set in the window stays.

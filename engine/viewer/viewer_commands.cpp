@@ -126,6 +126,8 @@ void Viewer::save_scene(const std::filesystem::path& path) {
     description.sides = settings.sides;
     description.epsilon_scale = settings.epsilon_scale;
     description.prefilter = settings.prefilter;
+    description.shading = settings.shading;
+    description.antialias = settings.antialias;
     write_text_file(path, write_scene(description, std::filesystem::absolute(path).parent_path()));
     report("Wrote " + path.string(), false);
 }
@@ -150,6 +152,7 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
         {"view", [&] { look.view = named(kViewNames, value, "set view").view; }},
         {"show", [&] { look.shown = named(kShownNames, value, "set show").shown; }},
         {"backend", [&] { look.backend = named(kBackendNames, value, "set backend").backend; }},
+        {"shading", [&] { look.shading = named(kShadingNames, value, "set shading").shading; }},
         {"sides", [&] { look.sides = named(kSides, value, "set sides").sides; }},
         {"epsilon", [&] { look.epsilon_scale = number(0, 100); }},
         {"prefilter", [&] { look.prefilter = on_or_off("set prefilter", value); }},

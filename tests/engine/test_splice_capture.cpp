@@ -130,7 +130,8 @@ TEST_CASE("the frame's render graph is written in the form that the file's exten
     CHECK(json.at("plan").at("groups")[0].at("passes") == nlohmann::json::parse("[0, 1, 2, 3]"));
     const auto& resources = json.at("resources");
     const auto resource = [&](const std::string& name) {
-        return std::find_if(resources.begin(), resources.end(), [&](const auto& one) { return one.at("name") == name; });
+        return std::find_if(resources.begin(), resources.end(),
+                            [&](const auto& one) { return one.at("name") == name; });
     };
     REQUIRE(resource("pixels") != resources.end());
     CHECK(resource("pixels")->at("residence") == "imported");

@@ -58,7 +58,10 @@ std::vector<Camera> camera_path(const CaptureCommand& command, const SceneDescri
         camera.up = command.up.value_or(default_up(camera.target - camera.eye));
     }
     if (command.fov_degrees) camera.fov_y_degrees = *command.fov_degrees;
-    if (command.orthographic && !camera.orthographic) {
+    if (command.orthographic_height) {
+        camera.orthographic = true;
+        camera.orthographic_height = *command.orthographic_height;
+    } else if (command.orthographic && !camera.orthographic) {
         // As high as the perspective picture shows at the target.
         camera.orthographic = true;
         camera.orthographic_height =

@@ -9,11 +9,13 @@
 #pragma once
 
 #include "engine/render_graph/export/export.h"
+#include "engine/render_graph/export/frame_picture.h"
 #include "engine/scene/backend.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shading.h"
+#include "engine/scene/shown.h"
 #include "engine/scene/view.h"
 #include "preprocess/model_format/model.h"
 
@@ -24,6 +26,11 @@
 #include <vector>
 
 namespace splice {
+
+namespace gpu {
+class Device;
+class Image;
+}  // namespace gpu
 
 struct RendererOptions {
     std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
@@ -36,6 +43,7 @@ struct CaptureSettings {
     Camera camera;                            // clip planes are set from the scene's bounds when clip_to_scene
     bool clip_to_scene = true;
     View view = View::kShaded;
+    Shown shown = Shown::kHybrid;
     Sides sides = Sides::kAsBaked;
     double epsilon_scale = 1;                         // thesis 4.3.1 uses 0.75..1.5; times each surfel's own epsilon
     bool prefilter = true;                            // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
@@ -47,6 +55,7 @@ struct CaptureSettings {
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
     Backend backend = Backend::kSprite;
     bool force_quads = false;  // draw every surfel as an oriented quad, none as a point sprite
+    friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
 };
 
 struct PassTime {
@@ -82,6 +91,7 @@ struct Frame {
 class Renderer {
   public:
     explicit Renderer(const RendererOptions& options);  // throws DeviceError, UsageError (no such device)
+    explicit Renderer(gpu::Device& device);             // which must outlive the renderer
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
@@ -90,6 +100,16 @@ class Renderer {
     std::shared_ptr<const GpuModel> load(const ModelView& model);
 
     Frame render(const Scene& scene, const CaptureSettings& settings);
+
+    /// The same colours (Frame::rgba, alpha aside) as an image on the device, for windows. `destination` has the
+    /// settings' size, format R8G8B8A8_UNORM and usages TRANSFER_DST and TRANSFER_SRC; it is left in
+    /// TRANSFER_SRC_OPTIMAL. Counts of pixels and what the settings want beside the picture are not filled in.
+    FrameStats render_to(const gpu::Image& destination, const Scene& scene, const CaptureSettings& settings);
+
+    /// The render graph of the last frame, as compiled. There must have been one.
+    graph::FramePicture last_graph() const;
+    /// Bytes of the last frame's attachments.
+    std::uint64_t attachment_bytes() const;
 
     const std::string& device_name() const;
 

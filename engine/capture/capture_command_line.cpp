@@ -91,6 +91,11 @@ Backend parse_backend(const std::string& text) {
     throw UsageError("--backend: expected one of " + list + ", got \"" + text + "\"");
 }
 
+Shown parse_shown(const std::string& text) {
+    if (const auto shown = shown_of_name(text)) return *shown;
+    throw UsageError("--show: expected hybrid, triangles or surfels, got \"" + text + "\"");
+}
+
 Background parse_background(const std::string& text) {
     Background background;
     background.transparent = text == "transparent";
@@ -120,7 +125,7 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        background, epsilon_scale, prefilter, antialias, shading;
+        show, height, background, epsilon_scale, prefilter, antialias, shading;
     bool one_sided = false, two_sided = false;
 };
 
@@ -142,6 +147,9 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     }
     if (!raw.view.empty()) command.view = parse_view(raw.view);
     if (!raw.backend.empty()) command.backend = parse_backend(raw.backend);
+    if (!raw.show.empty()) command.shown = parse_shown(raw.show);
+    if (!raw.height.empty())
+        command.orthographic_height = parse_in_range(raw.height, "--height", 1e-30, 1e30, " world units");
     if (!raw.background.empty()) command.background = parse_background(raw.background);
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
@@ -189,6 +197,8 @@ void check_combination(const CaptureCommand& command) {
     if (command.eye.has_value() != command.target.has_value())
         throw UsageError("--eye and --target are given together or not at all");
     if (command.up && !command.eye) throw UsageError("--up needs --eye and --target");
+    if (command.orthographic_height && !(command.orthographic && command.eye))
+        throw UsageError("--height needs --orthographic, --eye and --target");
     if (command.eye && (command.azimuth_degrees || command.elevation_degrees || command.zoom))
         throw UsageError("--eye and --target exclude --azimuth, --elevation and --zoom");
 }
@@ -219,6 +229,9 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_option("--elevation", raw.elevation, "The same from above, -90 to 90, default 20")->option_text("DEGREES");
     app.add_option("--zoom", raw.zoom, "2 shows everything twice as large, default 1")->option_text("FACTOR");
     app.add_flag("--orthographic", command.orthographic, "Parallel rays");
+    app.add_option("--height", raw.height,
+                   "With --orthographic and --eye: what the picture is high, in the file's units")
+        ->option_text("LENGTH");
     app.add_option("--orbit", raw.orbit, "N pictures around the model: OUT-000.png and so on")->option_text("N");
     app.add_option("--view", raw.view, view_help())->option_text("VIEW");
     app.add_option(
@@ -226,6 +239,11 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
            "What draws surfels: sprite (point sprites, default), tile (compute shaders) or auto (tile on software "
            "devices, else sprite). Sprites draw what tiles cannot; --stats tells")
         ->option_text("auto|sprite|tile");
+    app.add_option(
+           "--show", raw.show,
+           "hybrid (as baked, default), triangles (surfel patches by the triangles they were sampled from, too) "
+           "or surfels (surfel patches alone)")
+        ->option_text("hybrid|triangles|surfels");
     app.add_option("--background", raw.background, "#rrggbb, a name (white, black, grey, sky ...) or transparent")
         ->option_text("COLOUR");
     app.add_flag("--two-sided", raw.two_sided, "Show surfaces from behind, too");

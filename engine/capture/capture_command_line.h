@@ -20,9 +20,11 @@ struct CaptureCommand {
     std::optional<glm::dvec3> eye, target, up;                    // world units
     std::optional<double> fov_degrees, azimuth_degrees, elevation_degrees, zoom;
     bool orthographic = false;
-    std::uint32_t orbit = 0;  // frames, 0: a single picture
+    std::optional<double> orthographic_height;  // world units
+    std::uint32_t orbit = 0;                    // frames, 0: a single picture
     std::optional<View> view;
     std::optional<Backend> backend;
+    std::optional<Shown> shown;
     std::optional<Background> background;
     std::optional<Sides> sides;
     std::optional<double> epsilon_scale;

@@ -1,4 +1,4 @@
-#include "engine/capture/load_scene.h"
+#include "engine/capture/prepare_scene.h"
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/model_format/error.h"
 

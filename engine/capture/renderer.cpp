@@ -1,5 +1,6 @@
 #include "engine/capture/capture.h"
 #include "engine/capture/numeric_picture.h"
+#include "engine/passes/copy_pass.h"
 #include "engine/passes/frame.h"
 #include "engine/passes/read_back_pass.h"
 #include "engine/render_graph/executor/executor.h"
@@ -8,25 +9,40 @@
 #include "preprocess/model_format/error.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 namespace splice {
 
 struct Renderer::Implementation {
     explicit Implementation(const RendererOptions& options)
-        : instance({.validate = options.validate}),
-          device(instance, {.choice = gpu::parse_device_choice(options.device)}),
+        : own(std::make_unique<OwnDevice>(options)),
+          device(own->device),
           executor(device),
           passes(device, options.most_tile_groups) {}
+    explicit Implementation(gpu::Device& borrowed) : device(borrowed), executor(device), passes(device) {}
 
+    // What becomes of the picture: passes that read it.
+    using UsePicture = std::function<void(graph::Bindings&, graph::ImageHandle)>;
+    void draw(const Scene& scene, const CaptureSettings& settings, const Camera& camera, View view,
+              const UsePicture& use_picture, FrameStats* stats);
     std::vector<std::byte> render_raw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
                                       View view, FrameStats* stats);
     void reserve_pixels(std::uint64_t bytes);
 
-    gpu::Instance instance;
-    gpu::Device device;
+    struct OwnDevice {
+        explicit OwnDevice(const RendererOptions& options)
+            : instance({.validate = options.validate}),
+              device(instance, {.choice = gpu::parse_device_choice(options.device)}) {}
+        gpu::Instance instance;
+        gpu::Device device;
+    };
+
+    std::unique_ptr<OwnDevice> own;  // null: the device is somebody else's
+    gpu::Device& device;
     graph::Executor executor;
     FramePasses passes;
     graph::Graph graph;
@@ -36,6 +52,13 @@ struct Renderer::Implementation {
 namespace {
 
 constexpr std::uint64_t kTexelBytes = 4;  // of both picture formats
+
+std::array<VkBufferImageCopy, 1> whole_image(const CaptureSettings& settings) {
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {settings.width, settings.height, 1};
+    return {region};
+}
 
 std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
     std::vector<float> values(bytes.size() / sizeof(float));
@@ -81,8 +104,8 @@ void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
                                   .name = "pixels"});
 }
 
-std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, const CaptureSettings& settings,
-                                                            const Camera& camera, View view, FrameStats* stats) {
+void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
+                                    View view, const UsePicture& use_picture, FrameStats* stats) {
     const auto start = std::chrono::steady_clock::now();
     const std::uint32_t antialias = is_numeric(view) ? 1 : settings.antialias;
     const FrameSettings frame{.width = settings.width * antialias,
@@ -95,43 +118,50 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
                               .shading = settings.shading};
     const DrawListOptions list_options{
         .sides = settings.sides,
-        .draw_triangles =
-            settings.draw_triangles && settings.view != View::kSurfelsOnly && settings.view != View::kSamples,
+        .draw_triangles = settings.draw_triangles && settings.shown != Shown::kSurfels &&
+                          settings.view != View::kSurfelsOnly && settings.view != View::kSamples,
         .draw_surfels = settings.draw_surfels && settings.view != View::kTrianglesOnly,
+        .surfels_as_triangles = settings.shown == Shown::kTriangles,
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0};
     const DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
     passes.data.update(frame, scene.lighting, scene.background);
 
-    reserve_pixels(kTexelBytes * settings.width * settings.height);
     const Backend backend = choose_backend(settings.backend, device, passes, frame);
     graph.clear();
     graph::Bindings bindings;
-    const graph::BufferHandle destination =
-        graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
-    const graph::ImageHandle picture = add_frame(graph, bindings, passes, backend, frame, scene.background, draws);
-    add_read_back(graph, picture, destination, settings.width, settings.height);
-    bindings.bind(destination, pixels);
+    use_picture(bindings, add_frame(graph, bindings, passes, backend, frame, scene.background, draws));
     device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
 
+    if (!stats) return;
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    stats->frame_ms = elapsed.count();
+    for (const graph::PassTiming& timing : executor.timings())
+        stats->passes.push_back({timing.name, timing.gpu_ms});
+    stats->backend = backend;
+    stats->antialias = antialias;
+    stats->shading = settings.shading;
+    stats->surfels_drawn = draws.surfels;
+    stats->triangles_drawn = draws.triangles;
+}
+
+std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, const CaptureSettings& settings,
+                                                            const Camera& camera, View view, FrameStats* stats) {
+    reserve_pixels(kTexelBytes * settings.width * settings.height);
+    const auto read_back = [&](graph::Bindings& bindings, graph::ImageHandle picture) {
+        const graph::BufferHandle destination =
+            graph.import_buffer("pixels", {pixels.size()}, {.after = graph::external::host_read()});
+        add_read_back(graph, picture, destination, settings.width, settings.height);
+        bindings.bind(destination, pixels);
+    };
+    draw(scene, settings, camera, view, read_back, stats);
     const std::span<const std::byte> mapped = pixels.mapped();
-    std::vector<std::byte> bytes(mapped.begin(), mapped.begin() + static_cast<std::ptrdiff_t>(pixels.size()));
-    if (stats) {
-        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-        stats->frame_ms = elapsed.count();
-        for (const graph::PassTiming& timing : executor.timings())
-            stats->passes.push_back({timing.name, timing.gpu_ms});
-        stats->backend = backend;
-        stats->antialias = antialias;
-        stats->shading = settings.shading;
-        stats->surfels_drawn = draws.surfels;
-        stats->triangles_drawn = draws.triangles;
-    }
-    return bytes;
+    return {mapped.begin(), mapped.begin() + static_cast<std::ptrdiff_t>(pixels.size())};
 }
 
 Renderer::Renderer(const RendererOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
+Renderer::Renderer(gpu::Device& device) : implementation_(std::make_unique<Implementation>(device)) {}
 Renderer::~Renderer() = default;
 
 std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model) {
@@ -182,13 +212,46 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
     return frame;
 }
 
+FrameStats Renderer::render_to(const gpu::Image& destination, const Scene& scene, const CaptureSettings& settings) {
+    Implementation& engine = *implementation_;
+    if (is_numeric(settings.view)) {
+        // What turns numbers into colours runs on the host.
+        Frame frame = render(scene, settings);
+        gpu::upload(engine.device, destination, std::as_bytes(std::span(frame.rgba)), whole_image(settings),
+                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+        return std::move(frame.stats);
+    }
+    check_settings(settings, engine.device.limits());
+    Camera camera = settings.camera;
+    if (settings.clip_to_scene) fit_clip_planes(camera, scene.bounds());
+    FrameStats stats;
+    stats.device = device_name();
+    const auto copy = [&](graph::Bindings& bindings, graph::ImageHandle picture) {
+        const graph::ImageHandle shown = engine.graph.import_image(
+            "shown", {.format = destination.options().format, .width = settings.width, .height = settings.height},
+            {.after = graph::external::transfer_read()});
+        bindings.bind(shown, destination);
+        add_copy(engine.graph, picture, shown, settings.width, settings.height);
+    };
+    engine.draw(scene, settings, camera, settings.view, copy, &stats);
+    return stats;
+}
+
+graph::FramePicture Renderer::last_graph() const {
+    return graph::picture_of(implementation_->graph, &implementation_->executor.plan());
+}
+
+std::uint64_t Renderer::attachment_bytes() const {
+    return implementation_->executor.statistics().transient_bytes;
+}
+
 const std::string& Renderer::device_name() const {
     return implementation_->device.info().name;
 }
 
 std::vector<std::string> Renderer::validation_messages() const {
     std::vector<std::string> lines;
-    for (const gpu::ValidationMessage& message : implementation_->instance.messages())
+    for (const gpu::ValidationMessage& message : implementation_->device.instance().messages())
         lines.push_back(message.id + ": " + message.text);
     return lines;
 }

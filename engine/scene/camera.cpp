@@ -29,8 +29,12 @@ Camera frame_camera(const Box& bounds, const Framing& framing, std::uint32_t wid
     // At the poles the azimuth alone tells which way is up.
     const glm::dvec3 up(-std::sin(azimuth) * std::sin(elevation), std::cos(elevation),
                         -std::cos(azimuth) * std::sin(elevation));
-    const glm::dvec3 right = glm::cross(up, backwards);
+    return frame_camera(bounds, glm::dmat3(glm::cross(up, backwards), up, backwards), framing, width, height);
+}
 
+Camera frame_camera(const Box& bounds, const glm::dmat3& orientation, const Framing& framing, std::uint32_t width,
+                    std::uint32_t height) {
+    const glm::dvec3 right = orientation[0], up = orientation[1], backwards = orientation[2];
     const Box shown = bounds.empty() ? Box{glm::dvec3(-0.5), glm::dvec3(0.5)} : bounds;
     const double radius = std::max(shown.radius(), 1e-12);
     const double aspect = static_cast<double>(width) / static_cast<double>(height);

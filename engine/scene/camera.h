@@ -18,6 +18,7 @@ struct Camera {
     double orthographic_height = 2;  // world units that the picture is high
     double near_plane = 1e-3;        // depth in world units, > 0; nothing nearer is drawn
     double far_plane = 1e3;          // orthographic only; perspective depth is infinite
+    friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// An axis-aligned box in world space; empty when minimum > maximum.
@@ -46,6 +47,11 @@ struct Framing {
 
 /// The camera that shows `bounds` as large as `framing` and the picture's aspect allow.
 Camera frame_camera(const Box& bounds, const Framing& framing, std::uint32_t width, std::uint32_t height);
+
+/// The same for any orientation: columns right, up and backwards of the camera, orthonormal, in world space; the
+/// framing's angles do not count.
+Camera frame_camera(const Box& bounds, const glm::dmat3& orientation, const Framing& framing, std::uint32_t width,
+                    std::uint32_t height);
 
 /// Sets near_plane and far_plane so that `bounds` is inside wherever it is in front of the eye.
 void fit_clip_planes(Camera& camera, const Box& bounds);

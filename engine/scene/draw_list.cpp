@@ -125,7 +125,8 @@ class Culler {
 
     void visit_patch(std::uint32_t index) {
         const format::Patch& patch = draws_.model->patches()[index];
-        const bool triangles = patch.representation == format::Representation::kTriangles;
+        const bool triangles =
+            options_.surfels_as_triangles || patch.representation == format::Representation::kTriangles;
         if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return;
         const Extent extent = locate(patch.bounds_min, patch.bounds_max);
         if (extent.containment == Containment::kOutside) return;

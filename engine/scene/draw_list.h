@@ -46,7 +46,8 @@ enum class Sides { kAsBaked, kOneSided, kTwoSided };
 struct DrawListOptions {
     Sides sides = Sides::kAsBaked;
     bool draw_triangles = true, draw_surfels = true;
-    bool merge_patches = true;  // false: one draw a triangle patch, so that shaders can tell them apart
+    bool surfels_as_triangles = false;  // surfel patches by their triangles
+    bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
     double max_point_size = 255;  // pixels, of the device
 };

@@ -140,6 +140,25 @@ void read_camera(const JsonValue& value, SceneDescription& scene) {
     if (const auto zoom = value.member("zoom")) scene.framing.zoom = zoom->number(1e-6, 1e6, "a positive number");
 }
 
+std::vector<CameraBookmark> read_bookmarks(const JsonValue& value) {
+    std::vector<CameraBookmark> bookmarks;
+    const std::size_t count = value.array_size(0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const JsonValue element = value.element(i);
+        element.expect_members({"name", "camera"});
+        const std::string name = element.required("name").string();
+        const bool known = std::any_of(bookmarks.begin(), bookmarks.end(),
+                                       [&](const CameraBookmark& other) { return other.name == name; });
+        if (name.empty() || known) element.required("name").fail("a name that no bookmark before has");
+        const JsonValue camera = element.required("camera");
+        SceneDescription placed;
+        read_camera(camera, placed);
+        if (!placed.camera) camera.fail("a camera with eye and target");
+        bookmarks.push_back({name, *placed.camera});
+    }
+    return bookmarks;
+}
+
 Light read_light(const JsonValue& value) {
     value.expect_members({"type", "space", "direction", "position", "range", "colour", "intensity"});
     Light light;
@@ -270,7 +289,7 @@ SceneDescription parse_scene(std::string_view text, const std::string& name, con
         throw InputError(name, "", "not valid JSON: a number is out of range");
     }
     const JsonValue root(json, name);
-    root.expect_members({"models", "camera", "lighting", "background", "render"});
+    root.expect_members({"models", "camera", "lighting", "background", "render", "bookmarks"});
     SceneDescription scene;
     const JsonValue models = root.required("models");
     const std::size_t count = models.array_size(1);
@@ -280,6 +299,7 @@ SceneDescription parse_scene(std::string_view text, const std::string& name, con
     if (const auto lighting = root.member("lighting")) scene.lighting = read_lighting(*lighting);
     if (const auto background = root.member("background")) scene.background = read_background(*background);
     if (const auto render = root.member("render")) read_render(*render, scene);
+    if (const auto bookmarks = root.member("bookmarks")) scene.bookmarks = read_bookmarks(*bookmarks);
     return scene;
 }
 

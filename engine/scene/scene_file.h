@@ -40,12 +40,19 @@ struct SceneModel {
     std::vector<std::string> bake_members;  // those of the last three that the file gives, by name
 };
 
+/// A place to come back to.
+struct CameraBookmark {
+    std::string name;  // not empty, none twice
+    Camera camera;     // clip planes are not set
+};
+
 struct SceneDescription {
     std::vector<SceneModel> models;  // at least one
     std::optional<Camera> camera;    // eye and target given; clip planes are not set
     Framing framing;                 // else how to frame the models
     Lighting lighting = default_lighting();
     Background background;
+    std::vector<CameraBookmark> bookmarks;
     std::uint32_t width = 512, height = 512;
     View view = View::kShaded;
     Sides sides = Sides::kAsBaked;
@@ -60,6 +67,9 @@ SceneDescription read_scene_file(const std::filesystem::path& path);
 
 /// The same from text; `name` is for messages, `folder` is where relative paths start.
 SceneDescription parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder);
+
+/// The scene as a file whose folder is `folder`: reading it gives the same description, numbers exact.
+std::string write_scene(const SceneDescription& scene, const std::filesystem::path& folder);
 
 /// "#rgb", "#rrggbb", or a name out of white, black, grey, red, green, blue, sky: sRGB-encoded, 0..1.
 std::optional<glm::dvec3> parse_colour(std::string_view text);

@@ -35,6 +35,21 @@ QueueFamily find_queue_family(VkPhysicalDevice physical) {
     throw DeviceError("the Vulkan device has no queue for both graphics and compute");
 }
 
+/// Those that cannot show images on the surface are marked as unusable.
+std::vector<DeviceInfo> devices_for(const Instance& instance, VkSurfaceKHR surface) {
+    std::vector<DeviceInfo> devices = list_devices(instance);
+    if (surface == VK_NULL_HANDLE) return devices;
+    for (DeviceInfo& device : devices) {
+        if (!device.unusable.empty()) continue;
+        VkBool32 presents = VK_FALSE;
+        check(vkGetPhysicalDeviceSurfaceSupportKHR(device.handle, find_queue_family(device.handle).index, surface,
+                                                   &presents),
+              "asking whether a device can draw in the window");
+        if (presents == VK_FALSE) device.unusable = "cannot draw in windows of this display";
+    }
+    return devices;
+}
+
 /// The chain of feature structs, linked once; not copyable because the links point inside.
 struct FeatureChain {
     VkPhysicalDeviceFeatures2 core{};
@@ -58,7 +73,9 @@ struct FeatureChain {
 }  // namespace
 
 Device::Device(const Instance& instance, const DeviceOptions& options)
-    : instance_(&instance), options_(options), info_(choose_device(list_devices(instance), options.choice)) {
+    : instance_(&instance),
+      options_(options),
+      info_(choose_device(devices_for(instance, options.surface), options.choice)) {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(info_.handle, &properties);
     limits_ = properties.limits;
@@ -157,6 +174,9 @@ void Device::create_device() {
     create.pNext = &want.core;
     create.queueCreateInfoCount = 1;
     create.pQueueCreateInfos = &queue;
+    const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    create.enabledExtensionCount = options_.surface != VK_NULL_HANDLE ? 1 : 0;
+    create.ppEnabledExtensionNames = &swapchain;
     check(vkCreateDevice(info_.handle, &create, nullptr, &device_), "opening the Vulkan device '" + info_.name + "'");
 }
 
@@ -185,7 +205,7 @@ VkFormat Device::depth_stencil_format() const {
     return format;
 }
 
-void Device::submit_and_wait(const std::function<void(VkCommandBuffer)>& record) {
+void Device::submit_and_wait(const std::function<void(VkCommandBuffer)>& record, const SubmitSemaphores& semaphores) {
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -201,10 +221,20 @@ void Device::submit_and_wait(const std::function<void(VkCommandBuffer)>& record)
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands_;
+    submit.waitSemaphoreCount = semaphores.wait != VK_NULL_HANDLE ? 1 : 0;
+    submit.pWaitSemaphores = &semaphores.wait;
+    submit.pWaitDstStageMask = &semaphores.wait_stages;
+    submit.signalSemaphoreCount = semaphores.signal != VK_NULL_HANDLE ? 1 : 0;
+    submit.pSignalSemaphores = &semaphores.signal;
     const VkFence fence = fence_.get();
     check(vkQueueSubmit(queue_, 1, &submit, fence), "submitting commands");
     check(vkWaitForFences(device_, 1, &fence, VK_TRUE, UINT64_MAX), "waiting for the device");
     check(vkResetFences(device_, 1, &fence), "resetting a fence");
+}
+
+const std::vector<uint32_t>* Device::replacement_of(const std::string& shader) const {
+    const auto found = shaders_.find(shader);
+    return found == shaders_.end() ? nullptr : &found->second;
 }
 
 void Device::wait_idle() {

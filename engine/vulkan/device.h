@@ -12,8 +12,11 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace splice::gpu {
 
@@ -22,6 +25,15 @@ struct DeviceOptions {
     /// Upload through staging buffers even where device memory is mapped, so that a software rasteriser can test that
     /// path.
     bool force_staging = false;
+    /// Where swapchains of the device will show their images; only devices that can are considered.
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+};
+
+/// Semaphores around a submission; null: none.
+struct SubmitSemaphores {
+    VkSemaphore wait = VK_NULL_HANDLE;
+    VkPipelineStageFlags wait_stages = 0;  ///< that wait
+    VkSemaphore signal = VK_NULL_HANDLE;
 };
 
 /// Optional abilities; a feature that the device lacks is off and the caller chooses another way.
@@ -61,6 +73,10 @@ class Device {
     const DeviceFeatures& features() const { return features_; }
     bool force_staging() const { return options_.force_staging; }
     MemoryAllocator& memory() { return *memory_; }
+    /// SPIR-V that shader modules made from now on take in place of what they are given, by name ("triangle.vert").
+    void replace_shaders(std::map<std::string, std::vector<uint32_t>> shaders) { shaders_ = std::move(shaders); }
+    /// The replacement of a shader; null: there is none.
+    const std::vector<uint32_t>* replacement_of(const std::string& shader) const;
     /// Shared by all pipelines of the device, so that equal shaders are translated once a process.
     VkPipelineCache pipeline_cache() const { return pipeline_cache_.get(); }
 
@@ -71,7 +87,7 @@ class Device {
 
     /// Records commands, submits them and waits until they are done. Never from within `record`. What `record` throws
     /// is passed on and nothing is submitted. Throws DeviceError (a lost device included).
-    void submit_and_wait(const std::function<void(VkCommandBuffer)>& record);
+    void submit_and_wait(const std::function<void(VkCommandBuffer)>& record, const SubmitSemaphores& semaphores = {});
     void wait_idle();
 
     /// Debug names and labels; no-ops unless the instance has VK_EXT_debug_utils. Handles: any non-dispatchable one.
@@ -96,6 +112,7 @@ class Device {
     VkQueue queue_ = VK_NULL_HANDLE;
     std::unique_ptr<MemoryAllocator> memory_;
     UniquePipelineCache pipeline_cache_;
+    std::map<std::string, std::vector<uint32_t>> shaders_;
     UniqueCommandPool command_pool_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     UniqueFence fence_;

@@ -1,7 +1,5 @@
 #include "engine/vulkan/handle.h"
 
-#include "preprocess/model_format/error.h"
-
 namespace splice::gpu {
 
 std::string result_name(VkResult result) {
@@ -52,6 +50,8 @@ std::string result_name(VkResult result) {
 }
 
 void check(VkResult result, const std::string& what) {
+    if (result == VK_ERROR_DEVICE_LOST) throw DeviceLostError(what + ": " + result_name(result));
+    if (result == VK_ERROR_SURFACE_LOST_KHR) throw SurfaceLostError(what + ": " + result_name(result));
     if (result != VK_SUCCESS) throw DeviceError(what + ": " + result_name(result));
 }
 

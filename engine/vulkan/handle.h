@@ -1,6 +1,8 @@
 // Ownership of one Vulkan handle of a device, and the check of a VkResult.
 #pragma once
 
+#include "preprocess/model_format/error.h"
+
 #include <vulkan/vulkan_core.h>
 
 #include <string>
@@ -8,7 +10,19 @@
 
 namespace splice::gpu {
 
-/// Throws DeviceError "WHAT: VK_ERROR_..." unless result is VK_SUCCESS.
+/// The device stopped working; everything made with it is gone, but another one may do.
+class DeviceLostError : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
+
+/// The window's surface is gone, but another one may do.
+class SurfaceLostError : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
+
+/// Throws DeviceError "WHAT: VK_ERROR_..." unless result is VK_SUCCESS; a lost device or surface as its own type.
 void check(VkResult result, const std::string& what);
 
 /// "VK_ERROR_DEVICE_LOST" and the like; "VkResult N" for codes without a name here.
@@ -61,6 +75,7 @@ using UniqueFramebuffer = Unique<VkFramebuffer, &vkDestroyFramebuffer>;
 using UniqueQueryPool = Unique<VkQueryPool, &vkDestroyQueryPool>;
 using UniqueCommandPool = Unique<VkCommandPool, &vkDestroyCommandPool>;
 using UniqueFence = Unique<VkFence, &vkDestroyFence>;
+using UniqueSwapchain = Unique<VkSwapchainKHR, &vkDestroySwapchainKHR>;
 using UniqueSemaphore = Unique<VkSemaphore, &vkDestroySemaphore>;
 
 }  // namespace splice::gpu

@@ -57,6 +57,8 @@ Instance::Instance(const InstanceOptions& options) : log_(std::make_unique<Valid
     application.apiVersion = VK_API_VERSION_1_3;
 
     std::vector<const char*> layers, extensions;
+    for (const std::string& extension : options.extensions)
+        extensions.push_back(extension.c_str());
     if (options.validate) {
         if (!has_layer(kValidationLayer)) {
             throw DeviceError(
@@ -97,6 +99,8 @@ Instance::Instance(const InstanceOptions& options) : log_(std::make_unique<Valid
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER || result == VK_ERROR_INITIALIZATION_FAILED) {
         throw DeviceError("no Vulkan driver; `apt install mesa-vulkan-drivers` provides a software one (lavapipe)");
     }
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+        throw DeviceError("no Vulkan driver can draw in windows of this display");
     check(result, "creating the Vulkan instance");
 
     if (options.validate) {

@@ -14,6 +14,8 @@ struct InstanceOptions {
     /// Validation and synchronisation validation (VK_LAYER_KHRONOS_validation). Warnings and errors are collected, not
     /// printed: a program checks messages() at its end and fails on any.
     bool validate = false;
+    /// Instance extensions that the caller needs, such as a window system's.
+    std::vector<std::string> extensions = {};
 };
 
 struct ValidationMessage {

@@ -5,6 +5,7 @@
 namespace splice::gpu {
 
 ShaderModule::ShaderModule(const Device& device, std::span<const uint32_t> words, const std::string& name) {
+    if (const std::vector<uint32_t>* replacement = device.replacement_of(name)) words = *replacement;
     VkShaderModuleCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
     create.codeSize = words.size_bytes();

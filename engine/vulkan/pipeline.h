@@ -18,7 +18,8 @@ namespace splice::gpu {
 class ShaderModule {
   public:
     ShaderModule() = default;
-    /// SPIR-V words, as splice_shaders() embeds them. The name shows in validation messages.
+    /// SPIR-V words, as splice_shaders() embeds them. The name shows in validation messages; a
+    /// replacement that the device has for it goes before.
     ShaderModule(const Device& device, std::span<const uint32_t> words, const std::string& name);
     VkShaderModule handle() const { return module_.get(); }
 

@@ -105,14 +105,14 @@ Buffer create_buffer(Device& device, BufferOptions options, std::span<const std:
 }
 
 void upload(Device& device, const Image& image, std::span<const std::byte> bytes,
-            std::span<const VkBufferImageCopy> regions) {
+            std::span<const VkBufferImageCopy> regions, VkImageLayout layout) {
     const Buffer staging = staging_buffer(device, bytes.size());
     std::memcpy(staging.mapped().data(), bytes.data(), bytes.size());
     device.submit_and_wait([&](VkCommandBuffer commands) {
         transition(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                static_cast<uint32_t>(regions.size()), regions.data());
-        transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout);
     });
 }
 

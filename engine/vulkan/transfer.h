@@ -22,11 +22,11 @@ void upload(Device& device, const Buffer& buffer, std::span<const std::byte> byt
 /// A device buffer holding `bytes`.
 Buffer create_buffer(Device& device, BufferOptions options, std::span<const std::byte> bytes);
 
-/// Fills an image whose content is not needed any more and leaves it in SHADER_READ_ONLY_OPTIMAL, visible to every
-/// later command. Regions count from the start of `bytes`, tightly packed, bufferOffset a multiple of 4 and of the
-/// texel size.
+/// Fills an image whose content is not needed any more and leaves it in `layout`, visible to every later command.
+/// Regions count from the start of `bytes`, tightly packed, bufferOffset a multiple of 4 and of the texel size.
 void upload(Device& device, const Image& image, std::span<const std::byte> bytes,
-            std::span<const VkBufferImageCopy> regions);
+            std::span<const VkBufferImageCopy> regions,
+            VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
 /// The bytes of a buffer after all submitted work.
 std::vector<std::byte> read_back(Device& device, const Buffer& buffer, uint64_t offset, uint64_t size);

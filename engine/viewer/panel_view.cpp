@@ -1,0 +1,164 @@
+// Sections of the side panel: what is shown and how.
+#include "engine/viewer/panels.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace splice {
+
+namespace {
+
+// A list of a table of names; the lists are those of the programs' options.
+template <typename Table, typename Value, typename Member>
+void choose(const char* label, const Table& table, Value& value, Member member) {
+    const auto current =
+        std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.*member == value; });
+    const std::string shown(current == table.end() ? "" : current->name);
+    if (!ImGui::BeginCombo(label, shown.c_str(), ImGuiComboFlags_HeightLarge)) return;
+    for (const auto& row : table) {
+        const std::string name(row.name);
+        if (ImGui::Selectable(name.c_str(), row.*member == value)) value = row.*member;
+        if constexpr (requires { row.description; }) {
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.description).c_str());
+        }
+    }
+    ImGui::EndCombo();
+}
+
+struct SidesName {
+    Sides sides;
+    const char* name;
+};
+constexpr std::array<SidesName, 3> kSidesNames{
+    {{Sides::kAsBaked, "as baked"}, {Sides::kOneSided, "one-sided"}, {Sides::kTwoSided, "two-sided"}}};
+
+bool edit_colour(const char* label, glm::dvec3& colour, ImGuiColorEditFlags flags) {
+    glm::vec3 shown(colour);
+    if (!ImGui::ColorEdit3(label, glm::value_ptr(shown), flags | ImGuiColorEditFlags_NoInputs)) return false;
+    colour = glm::dvec3(shown);
+    return true;
+}
+
+bool edit_number(const char* label, double& value, float least, float most, const char* format = "%.2f") {
+    auto shown = static_cast<float>(value);
+    if (!ImGui::SliderFloat(label, &shown, least, most, format, ImGuiSliderFlags_AlwaysClamp)) return false;
+    value = shown;
+    return true;
+}
+
+bool edit_vector(const char* label, glm::dvec3& value) {
+    glm::vec3 shown(value);
+    if (!ImGui::DragFloat3(label, glm::value_ptr(shown), 0.02F, -1e6F, 1e6F, "%.2f")) return false;
+    value = glm::dvec3(shown);
+    return true;
+}
+
+bool edit_light(Light& light) {
+    bool changed = false;
+    int kind = static_cast<int>(light.kind), space = static_cast<int>(light.space);
+    changed |= ImGui::Combo("Kind", &kind, "directional\0point\0");
+    changed |= ImGui::Combo("Moves with", &space, "the camera\0the world\0");
+    light.kind = static_cast<LightKind>(kind);
+    light.space = static_cast<LightSpace>(space);
+    // One number for strength and a colour of full brightness are easier to set than three numbers above 1.
+    double strength = std::max({light.colour.r, light.colour.g, light.colour.b, 1e-6});
+    glm::dvec3 hue = light.colour / strength;
+    changed |= edit_number("Strength", strength, 0, 3);
+    changed |= edit_colour("Colour", hue, ImGuiColorEditFlags_Float);
+    light.colour = hue * strength;
+    if (light.kind == LightKind::kDirectional) {
+        glm::dvec3 direction = light.direction;
+        changed |= edit_vector("Direction", direction);
+        if (glm::length(direction) > 1e-6) light.direction = direction;
+    } else {
+        changed |= edit_vector("Position", light.position);
+        changed |= edit_number("Range", light.range, 0.01F, 100, "%.2f");
+    }
+    return changed;
+}
+
+}  // namespace
+
+void draw_view_section(PanelContext& context) {
+    ViewerState& state = context.state;
+    choose("Compare", kComparisonNames, state.comparison, &ComparisonName::comparison);
+    if (state.comparison == Comparison::kOff) {
+        state.edited_look = 0;
+    } else {
+        int edited = static_cast<int>(state.edited_look);
+        ImGui::RadioButton("Left", &edited, 0);
+        ImGui::SameLine();
+        ImGui::RadioButton("Right", &edited, 1);
+        state.edited_look = static_cast<std::size_t>(edited);
+    }
+    CaptureSettings& look = state.looks[state.edited_look];
+    choose("View", kViewNames, look.view, &ViewName::view);
+    choose("Show", kShownNames, look.shown, &ShownName::shown);
+    choose("Backend", kBackendNames, look.backend, &BackendName::backend);
+    choose("Shading", kShadingNames, look.shading, &ShadingName::shading);
+    choose("Sides", kSidesNames, look.sides, &SidesName::sides);
+    edit_number("Epsilon", look.epsilon_scale, 0, 4);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("How far surfels may lie behind one another and still blend");
+    ImGui::Checkbox("Prefilter", &look.prefilter);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("EWA's screen-space low-pass filter");
+    ImGui::Checkbox("Coarser while moving", &state.reduce_while_moving);
+    if (!state.scene) return;
+    Background& background = state.scene->loaded.scene.background;
+    if (edit_colour("Background", background.colour, ImGuiColorEditFlags_Uint8)) {
+        background.transparent = false;
+        ++state.scene_revision;
+    }
+}
+
+void draw_camera_section(PanelContext& context) {
+    ViewerState& state = context.state;
+    bool orthographic = state.camera.orthographic();
+    if (ImGui::Checkbox("Parallel rays (5)", &orthographic)) state.camera.set_orthographic(orthographic);
+    bool trackball = state.navigation.style == OrbitStyle::kTrackball;
+    if (ImGui::Checkbox("Trackball", &trackball))
+        state.navigation.style = trackball ? OrbitStyle::kTrackball : OrbitStyle::kTurntable;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Turn about the camera's own axes, not the world's up");
+    const Camera camera = state.camera.camera();
+    const auto row = [](const char* name, const glm::dvec3& v) {
+        ImGui::Text("%s  %.4g  %.4g  %.4g", name, v.x, v.y, v.z);
+    };
+    row("Eye", camera.eye);
+    row("Pivot", state.camera.pivot());
+    if (ImGui::Button("Copy as splice-capture command")) context.commands.push_back({"copy-camera", {}});
+}
+
+void draw_light_section(PanelContext& context) {
+    ViewerState& state = context.state;
+    if (!state.scene) {
+        ImGui::TextDisabled("no scene");
+        return;
+    }
+    Lighting& lighting = state.scene->loaded.scene.lighting;
+    bool changed = edit_colour("Ambient", lighting.ambient, ImGuiColorEditFlags_Float);
+    changed |= edit_number("Specular", lighting.specular, 0, 2);
+    if (lighting.specular > 0) changed |= edit_number("Shininess", lighting.shininess, 1, 256, "%.0f");
+    std::size_t removed = lighting.lights.size();
+    for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        ImGui::Separator();
+        changed |= edit_light(lighting.lights[i]);
+        if (ImGui::SmallButton("Remove")) removed = i;
+        ImGui::PopID();
+    }
+    if (removed < lighting.lights.size()) {
+        lighting.lights.erase(lighting.lights.begin() + static_cast<std::ptrdiff_t>(removed));
+        changed = true;
+    }
+    ImGui::Separator();
+    if (ImGui::Button("Add a light")) {
+        lighting.lights.push_back(default_lighting().lights.front());
+        changed = true;
+    }
+    if (changed) ++state.scene_revision;
+}
+
+}  // namespace splice

@@ -1,0 +1,377 @@
+#include "engine/viewer/viewer.h"
+
+#include "engine/capture/camera_path.h"
+#include "engine/capture/png_file.h"
+#include "engine/scene/gpu_model.h"
+#include "engine/viewer/settings_file.h"
+#include "preprocess/model_format/error.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+
+namespace splice {
+
+namespace {
+
+constexpr double kRestSeconds = 0.2;     // without a move, until the picture is drawn whole
+constexpr double kIdleSeconds = 0.5;     // between looks at what no event announces
+constexpr double kLongestSeconds = 0.1;  // of flight a frame, after a pause
+
+std::int32_t rounded(double value) {
+    return static_cast<std::int32_t>(std::lround(value));
+}
+
+std::uint32_t shared(std::uint32_t side, double share) {
+    return std::max(1U, static_cast<std::uint32_t>(std::lround(side * share)));
+}
+
+}  // namespace
+
+Viewer::Graphics::Graphics(const Window& window, const gpu::Instance& instance, const std::string& name,
+                           gpu::PresentMode mode)
+    : surface(window.create_surface(instance)),
+      device(instance, {.choice = gpu::parse_device_choice(name), .surface = surface.handle()}),
+      renderer(std::make_unique<Renderer>(device)),
+      presenter(device, surface.handle(), mode),
+      interface(std::make_unique<InterfaceDrawing>(device)) {}
+
+Layout Viewer::layout() const {
+    const VkExtent2D size = window_.size();
+    return lay_out(static_cast<float>(size.width), static_cast<float>(size.height),
+                   static_cast<float>(window_.content_scale()), state_.panels);
+}
+
+PictureArea Viewer::area(std::size_t picture) const {
+    const VkExtent2D pixels = window_.pixels(), size = window_.size();
+    const Layout panels = layout();
+    const double scale = size.width == 0 ? 1 : static_cast<double>(pixels.width) / size.width;
+    PictureArea area;
+    area.scale = scale;
+    area.x = rounded(static_cast<double>(panels.panel_width) * scale);
+    const double width = std::max(pixels.width - area.x, 1.0);
+    const double height = pixels.height - std::round(static_cast<double>(panels.status_height) * scale);
+    area.size = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(std::max(height, 1.0))};
+    if (state_.comparison != Comparison::kSideBySide) return area;
+    const double half = std::floor(width / 2);
+    area.size.width = std::max(1U, static_cast<std::uint32_t>(picture == 0 ? half : width - half));
+    if (picture == 1) area.x += half;
+    return area;
+}
+
+std::size_t Viewer::area_at(double window_x) const {
+    if (state_.comparison != Comparison::kSideBySide) return 0;
+    const PictureArea right = area(1);
+    return window_x * right.scale >= right.x ? 1 : 0;
+}
+
+bool Viewer::moving() const {
+    return now_ - moved_at_ < kRestSeconds;
+}
+
+bool Viewer::at_rest() const {
+    return !job_ && !turntable_ && !moving() && input_.empty() && commands_.empty() &&
+           (pictures_whole_ || !state_.scene);
+}
+
+double Viewer::idle_seconds() const {
+    const bool scripted = script_at_ < script_.size();
+    if (scripted || redraw_ > 0 || moving() || turntable_ || !input_.empty()) return 0;
+    return job_ ? 1.0 / 30 : kIdleSeconds;
+}
+
+void Viewer::run() {
+    while (!quit_ && !window_.wants_to_close()) {
+        try {
+            loop();
+        } catch (const gpu::DeviceLostError& error) {
+            recover(error.what());
+        } catch (const gpu::SurfaceLostError& error) {
+            recover(error.what());
+        }
+    }
+    if (!options_.script) save_settings(settings_of(state_, window_.size().width, window_.size().height));
+    const std::vector<gpu::ValidationMessage> messages = instance_.messages();
+    if (!messages.empty())
+        throw DeviceError("the validation layers report " + std::to_string(messages.size()) +
+                          " problem(s), the first: " + messages.front().id + ": " + messages.front().text);
+}
+
+// What the scene is made of stays in memory, so that another device can take it over.
+void Viewer::recover(const std::string& reason) {
+    if (++losses_ > 1) throw DeviceError("the device was lost twice: " + reason);
+    const std::string device = options_.renderer.device;
+    Scene kept;
+    if (state_.scene) {
+        kept = std::move(state_.scene->loaded.scene);
+        state_.scene->loaded.scene = Scene();
+        kept.instances.clear();
+    }
+    graphics_.reset();
+    graphics_.emplace(window_, instance_, device, state_.present_mode);
+    if (state_.scene) {
+        kept.instances = upload_scene(state_.scene->prepared, *graphics_->renderer).scene.instances;
+        state_.scene->loaded.scene = std::move(kept);
+        ++state_.scene_revision;
+    }
+    report("The device was lost and opened again (" + reason + ")", true);
+}
+
+void Viewer::loop() {
+    while (!quit_ && !window_.wants_to_close()) {
+        window_.wait(idle_seconds());
+        const double before = now_;
+        now_ = Window::now();
+        if (!window_.events().empty() || window_.take_damage()) redraw_ = kFramesToSettle;
+        play_script();
+        std::move(window_.events().begin(), window_.events().end(), std::back_inserter(input_));
+        window_.events().clear();
+        take_input();
+        if (state_.navigation.advance(std::min(now_ - before, kLongestSeconds), state_.camera)) moved_at_ = now_;
+        poll_job();
+        poll_shaders();
+        const VkExtent2D pixels = window_.pixels();
+        if (pixels.width == 0 || pixels.height == 0) {
+            window_.wait(kIdleSeconds / 10);  // nothing can be shown; not to spin
+            continue;
+        }
+        const bool idle = redraw_ == 0 && !moving() && !job_ && frames_to_draw_ == 0 && pictures_whole_ && !turntable_;
+        if (idle && commands_.empty()) continue;
+        redraw_ = std::max(redraw_ - 1, 0);
+        if (interface_.set_scale(window_.content_scale())) {
+            graphics_->interface.reset();
+            graphics_->interface = std::make_unique<InterfaceDrawing>(graphics_->device);
+        }
+        draw_panels();
+        advance_turntable();
+        draw_pictures();
+        show_window();
+        update_title();
+        const double frame = Window::now() - now_;
+        if (frame > 0) {
+            // A running mean over some ten frames.
+            const double rate = 1 / std::max(frame, 1e-4);
+            state_.frames_per_second += (rate - state_.frames_per_second) * 0.1;
+        }
+        if (state_.reduce_while_moving && moving()) resolution_.took(frame * 1000);
+    }
+}
+
+void Viewer::poll_job() {
+    if (!job_) {
+        progress_.reset();
+        return;
+    }
+    progress_ = job_->progress();
+    std::optional<SceneJob::Outcome> outcome = job_->take_outcome();
+    if (!outcome) return;
+    job_.reset();
+    progress_.reset();
+    redraw_ = kFramesToSettle;
+    if (!outcome->scene) {
+        report(outcome->error, true);
+        return;
+    }
+    try {
+        show_scene(outcome->request, std::move(*outcome->scene));
+    } catch (const gpu::DeviceLostError&) {
+        throw;
+    } catch (const Error& error) {
+        report(error.what(), true);
+    }
+}
+
+void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
+    auto scene = std::make_unique<OpenScene>();
+    scene->paths = request.paths;
+    scene->name = request.paths.front().filename().string();
+    if (request.paths.size() > 1) scene->name += " and " + std::to_string(request.paths.size() - 1) + " more";
+    scene->loaded = upload_scene(prepared, *graphics_->renderer);
+    scene->prepared = std::move(prepared);
+    std::map<const HostModel*, bool> counted;
+    for (std::size_t i = 0; i < scene->prepared.models.size(); ++i) {
+        const HostModel& model = *scene->prepared.models[i];
+        const ModelView& view = model.view();
+        scene->pickable.push_back({&view, scene->loaded.scene.instances[i].transform});
+        scene->bakeable = scene->bakeable || model.baked();
+        scene->patches += view.patches.size();
+        scene->triangles += view.info->drawn_triangles;
+        scene->surfels += view.surfels.size();
+        scene->source_triangles += view.info->source_triangles;
+        if (std::exchange(counted[&model], true)) continue;
+        scene->bytes += view.vertices.size_bytes() + view.indices.size_bytes() + view.surfels.size_bytes() +
+                        view.patches.size_bytes() + view.texels.size_bytes();
+    }
+    for (const std::string& warning : scene->loaded.warnings)
+        report(warning, false);
+
+    const SceneDescription& description = scene->loaded.description;
+    const Box bounds = scene->loaded.scene.bounds();
+    state_.camera.set_bounds(bounds);
+    state_.picked.reset();
+    if (!request.keep_camera) {
+        state_.bake = BakeOptions{};
+        const Viewport viewport = area(0).size;
+        state_.camera.set_camera(description.camera
+                                     ? *description.camera
+                                     : frame_camera(bounds, description.framing, viewport.width, viewport.height));
+        for (CaptureSettings& look : state_.looks) {
+            look.view = description.view;
+            look.sides = description.sides;
+            look.epsilon_scale = description.epsilon_scale;
+            look.prefilter = description.prefilter;
+            look.shading = description.shading;
+            look.antialias = description.antialias;
+        }
+    } else if (state_.scene) {
+        // The same scene, baked anew: what was set in the window stays.
+        scene->loaded.scene.lighting = state_.scene->loaded.scene.lighting;
+        scene->loaded.scene.background = state_.scene->loaded.scene.background;
+        scene->loaded.description.bookmarks = state_.scene->loaded.description.bookmarks;
+    }
+    state_.scene = std::move(scene);
+    ++state_.scene_revision;
+}
+
+void Viewer::poll_shaders() {
+    if (!shaders_ || !shaders_->poll(now_)) return;
+    redraw_ = kFramesToSettle;
+    if (!shaders_->error().empty()) {
+        report(shaders_->error(), true);
+        return;
+    }
+    graphics_->device.wait_idle();
+    graphics_->device.replace_shaders(shaders_->shaders());
+    graphics_->renderer = std::make_unique<Renderer>(graphics_->device);
+    ++state_.scene_revision;
+    state_.messages.clear();
+    report("Shaders compiled anew", false);
+}
+
+void Viewer::update_title() {
+    std::string title = "splice-view";
+    if (state_.scene) title = state_.scene->name + " - " + title;
+    if (job_) title = "loading " + job_->request().paths.front().filename().string() + " - splice-view";
+    window_.set_title(title);
+}
+
+void Viewer::draw_panels() {
+    interface_.begin_frame();
+    PanelContext context{state_, commands_, progress_, shaders_ ? shaders_->status() : ""};
+    const Layout panels = layout();
+    if (state_.panels) {
+        draw_side_panel(context, panels);
+        draw_status_bar(context, panels);
+    }
+    draw_graph_window(context, panels);
+    draw_overlays(context, panels);
+    interface_.end_frame();
+    // Commands may add commands.
+    while (!commands_.empty()) {
+        const Command command = commands_.front();
+        commands_.erase(commands_.begin());
+        try {
+            run_command(command);
+        } catch (const gpu::DeviceLostError&) {
+            throw;
+        } catch (const Error& error) {
+            report(error.what(), true);
+        }
+        redraw_ = kFramesToSettle;
+    }
+}
+
+void Viewer::draw_pictures() {
+    pictures_whole_ = true;
+    if (!state_.scene) return;
+    const bool reduced = state_.reduce_while_moving && moving();
+    const double share = reduced ? resolution_.share() : 1;
+    for (std::size_t i = 0; i < pictures(); ++i) {
+        const Viewport viewport = area(i).size;
+        CaptureSettings& look = state_.looks[i];
+        look.width = viewport.width;
+        look.height = viewport.height;
+        look.camera = state_.camera.camera();
+        CaptureSettings settings = look;
+        settings.width = shared(viewport.width, share);
+        settings.height = shared(viewport.height, share);
+        Pane& pane = graphics_->panes[i];
+        const bool drawn = pane.update(graphics_->device, *graphics_->renderer, state_.scene->loaded.scene,
+                                       state_.scene_revision, settings);
+        if (!drawn || i != state_.edited_look) continue;
+        state_.stats = pane.stats();
+        state_.history.add(pane.stats().passes);
+        state_.graph = graphics_->renderer->last_graph();
+        state_.attachment_bytes = graphics_->renderer->attachment_bytes();
+        state_.drawn_width = settings.width;
+        state_.drawn_height = settings.height;
+    }
+    state_.device_bytes = graphics_->device.memory().statistics().allocated_bytes;
+    state_.device_name = graphics_->device.info().name;
+    pictures_whole_ = share == 1;
+}
+
+std::vector<ShownPicture> Viewer::shown_pictures() const {
+    std::vector<ShownPicture> shown;
+    if (!state_.scene) return shown;
+    for (std::size_t i = 0; i < pictures(); ++i) {
+        const Pane& pane = graphics_->panes[i];
+        if (pane.empty()) continue;
+        const PictureArea place = area(i);
+        PixelRect source{0, 0, static_cast<std::int32_t>(pane.settings().width),
+                         static_cast<std::int32_t>(pane.settings().height)};
+        PixelRect destination{rounded(place.x), rounded(place.y), static_cast<std::int32_t>(place.size.width),
+                              static_cast<std::int32_t>(place.size.height)};
+        if (state_.comparison == Comparison::kWipe) {
+            const std::int32_t from = rounded(state_.wipe * source.width),
+                               to = rounded(state_.wipe * destination.width);
+            if (i == 0) {
+                source.width = from;
+                destination.width = to;
+            } else {
+                source = {from, 0, source.width - from, source.height};
+                destination = {destination.x + to, destination.y, destination.width - to, destination.height};
+            }
+            if (source.width == 0 || destination.width == 0) continue;
+        }
+        shown.push_back({&pane.image(), source, destination});
+    }
+    return shown;
+}
+
+bool Viewer::show_window(WindowPixels* pixels) {
+    const auto draw_interface = [&](const graph::PassContext& context) { graphics_->interface->draw(context); };
+    const bool shown = graphics_->presenter.present(window_.pixels(), shown_pictures(), draw_interface, pixels);
+    state_.present_mode = graphics_->presenter.mode();
+    const bool repeat = graphics_->interface->prepare();
+    if (!shown || repeat) redraw_ = kFramesToSettle;
+    return shown && !repeat;
+}
+
+void Viewer::advance_turntable() {
+    if (!turntable_ || !state_.scene) return;
+    CaptureSettings settings = full_settings(state_.edited_look);
+    const double angle = 2 * glm::pi<double>() * turntable_->done / turntable_->count;
+    const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0, 1, 0)));
+    settings.camera.eye = settings.camera.target + turn * (turntable_->first.eye - turntable_->first.target);
+    settings.camera.up = turn * turntable_->first.up;
+    try {
+        Frame frame = graphics_->renderer->render(state_.scene->loaded.scene, settings);
+        write_png(numbered(turntable_->path, turntable_->done, turntable_->count),
+                  {frame.width, frame.height, std::move(frame.rgba)});
+        if (++turntable_->done < turntable_->count) return;
+        report("Wrote " + std::to_string(turntable_->count) + " pictures, the last " +
+                   numbered(turntable_->path, turntable_->count - 1, turntable_->count).string(),
+               false);
+    } catch (const gpu::DeviceLostError&) {
+        throw;
+    } catch (const Error& error) {
+        report(error.what(), true);
+    }
+    turntable_.reset();
+}
+
+}  // namespace splice

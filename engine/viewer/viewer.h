@@ -1,0 +1,120 @@
+// splice-view: the window's loop. Every frame: the script's next step, input, what the loading thread has, panels,
+// pictures, the window.
+#pragma once
+
+#include "engine/viewer/interface.h"
+#include "engine/viewer/pane.h"
+#include "engine/viewer/panels.h"
+#include "engine/viewer/presenter.h"
+#include "engine/viewer/resolution.h"
+#include "engine/viewer/script.h"
+#include "engine/viewer/shader_watch.h"
+#include "engine/viewer/viewer_command_line.h"
+#include "engine/viewer/viewer_state.h"
+#include "engine/viewer/window.h"
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace splice {
+
+class Viewer {
+  public:
+    /// Throws SystemError (no display), DeviceError, InputError (of a script).
+    explicit Viewer(const ViewerCommandLine& command);
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
+
+    /// Until the window is closed. Throws DeviceError where the device is lost a second time, or validation complained.
+    void run();
+
+  private:
+    /// All that a lost device takes with it, beside the scene's models.
+    struct Graphics {
+        Graphics(const Window& window, const gpu::Instance& instance, const std::string& device, gpu::PresentMode mode);
+        gpu::Surface surface;
+        gpu::Device device;
+        std::unique_ptr<Renderer> renderer;  // made anew when shaders change
+        Presenter presenter;
+        std::unique_ptr<InterfaceDrawing> interface;  // made anew when fonts change
+        std::array<Pane, 2> panes;
+    };
+    static constexpr int kFramesToSettle = 3;  // that the interface needs after an event
+
+    /// A picture a frame, so that the window stays usable.
+    struct Turntable {
+        std::filesystem::path path;
+        Camera first;
+        std::uint32_t count = 0, done = 0;
+    };
+
+    void loop();
+    void recover(const std::string& reason);
+    double idle_seconds() const;
+    bool at_rest() const;
+
+    void play_script();
+    void take_input();
+    void handle(const InputEvent& event);
+    bool handle_key(const InputEvent& event);
+    bool handle_divider(const InputEvent& event);
+    void pick_at(const glm::dvec2& place);
+    std::optional<glm::dvec3> surface_at(std::size_t area, const glm::dvec2& place) const;
+
+    void poll_job();
+    void show_scene(const SceneRequest& request, PreparedScene prepared);
+    void poll_shaders();
+    void update_title();
+    void draw_panels();
+    void draw_pictures();
+    bool show_window(WindowPixels* pixels = nullptr);
+    void advance_turntable();
+
+    // Commands (viewer_commands.cpp).
+    void run_command(const Command& command);
+    void set_value(const std::string& name, const std::string& value);
+    void open(std::vector<std::filesystem::path> paths, bool again);
+    void save_scene(const std::filesystem::path& path);
+    void go_to(const std::string& bookmark);
+    void report(const std::string& text, bool error);
+    CaptureSettings full_settings(std::size_t look) const;
+    std::filesystem::path first_input() const;
+
+    Layout layout() const;
+    std::size_t pictures() const { return state_.comparison == Comparison::kOff ? 1 : 2; }
+    PictureArea area(std::size_t picture) const;
+    std::size_t area_at(double window_x) const;
+    std::vector<ShownPicture> shown_pictures() const;
+    bool moving() const;
+
+    ViewerCommandLine options_;
+    Window window_;
+    gpu::Instance instance_;
+    Interface interface_;
+    std::optional<Graphics> graphics_;
+    ViewerState state_;
+    std::unique_ptr<SceneJob> job_;
+    std::optional<SceneJob::Progress> progress_;
+    std::optional<ShaderWatch> shaders_;
+    std::vector<ScriptStep> script_;
+    std::size_t script_at_ = 0;
+    std::uint64_t frames_to_draw_ = 0;  // of the script's step
+    InputQueue input_;
+    std::vector<Command> commands_;
+    std::optional<Turntable> turntable_;
+    MovingResolution resolution_;
+    std::size_t dragged_area_ = 0;
+    bool dragging_divider_ = false;
+    double now_ = 0, moved_at_ = -1e9;  // seconds
+    int redraw_ = 0;                    // frames until the interface is at rest
+    bool pictures_whole_ = false;       // drawn, at full resolution
+    bool quit_ = false;
+    int losses_ = 0;
+};
+
+}  // namespace splice

@@ -1,0 +1,82 @@
+// What panels, commands and the frame loop share: plain data.
+#pragma once
+
+#include "engine/capture/capture.h"
+#include "engine/capture/load_scene.h"
+#include "engine/viewer/camera_controller.h"
+#include "engine/viewer/navigation.h"
+#include "engine/viewer/pass_history.h"
+#include "engine/viewer/picking.h"
+#include "engine/viewer/scene_job.h"
+#include "engine/vulkan/swapchain.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace splice {
+
+enum class Comparison { kOff, kSideBySide, kWipe };
+struct ComparisonName {
+    Comparison comparison;
+    std::string_view name;
+};
+inline constexpr std::array<ComparisonName, 3> kComparisonNames{
+    {{Comparison::kOff, "off"}, {Comparison::kSideBySide, "side-by-side"}, {Comparison::kWipe, "wipe"}}};
+
+/// A scene in memory and on the device.
+struct OpenScene {
+    std::vector<std::filesystem::path> paths;
+    std::string name;  // of the file, or of the first and how many more
+    PreparedScene prepared;
+    LoadedScene loaded;
+    std::vector<PickableModel> pickable;  // one an instance
+    bool bakeable = false;                // something in it is a mesh or a shape
+    std::uint64_t patches = 0, triangles = 0, surfels = 0, source_triangles = 0, bytes = 0;  // of all instances
+};
+
+struct Message {
+    std::string text;
+    bool error = false;
+};
+
+struct ViewerState {
+    // What is shown: one look, or two to compare. Camera and size are the window's and filled in for each frame.
+    std::array<CaptureSettings, 2> looks;
+    std::size_t edited_look = 0;
+    Comparison comparison = Comparison::kOff;
+    double wipe = 0.5;  // share of the picture that is left of the line
+    bool reduce_while_moving = true;
+
+    // The camera.
+    CameraController camera;
+    Navigation navigation;
+
+    // The scene.
+    std::unique_ptr<OpenScene> scene;
+    std::uint64_t scene_revision = 0;  // changes with models, lights and background
+    BakeOptions bake;                  // for what is baked from now on
+    std::optional<Hit> picked;
+
+    // The interface.
+    bool panels = true, graph_window = false;
+    std::vector<Message> messages;
+    int lit_pass = -1;  // of the last frame's graph, under the cursor
+    gpu::PresentMode present_mode = gpu::PresentMode::fifo;
+
+    // Measurements, of the look that is edited.
+    PassHistory history;
+    FrameStats stats;
+    graph::FramePicture graph;
+    std::uint32_t drawn_width = 0, drawn_height = 0;  // of the picture as drawn; smaller than shown while moving
+    double frames_per_second = 0;
+    std::uint64_t device_bytes = 0, attachment_bytes = 0;
+    std::string device_name;
+};
+
+}  // namespace splice

@@ -1,0 +1,433 @@
+// splice-view in a real window on a display of the test's own, with real input events, on a software device.
+#include "engine/capture/png_file.h"
+#include "preprocess/mesh/shapes.h"
+#include "preprocess/mesh/write_mesh.h"
+#include "tests/cli/spawn.h"
+#include "tests/support/test_files.h"
+#include "tests/viewer/virtual_display.h"
+
+#include <catch2/catch.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+using namespace splice;
+using test::cropped;
+using test::difference;
+
+namespace {
+
+constexpr std::uint32_t kPanel = 300, kStatus = 26;  // of the interface at this size
+
+std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+// A mesh that is neither flat nor symmetric, so that turning it shows.
+void write_mesh_file(const std::filesystem::path& path, std::uint32_t segments = 60) {
+    write_ply(shapes::torus_knot(2, 3, segments, 12), path);
+}
+
+void write_model_file(const std::filesystem::path& mesh, const std::filesystem::path& model) {
+    const test::Outcome baked = test::run(
+        {test::program("splice-bake"), {mesh.string(), "-o", model.string(), "--triangle-share", "0.4", "--quiet"}});
+    REQUIRE(baked.exit_code == 0);
+}
+
+// splice-view as another process; its streams go to files of the folder.
+class RunningViewer {
+  public:
+    RunningViewer(const std::filesystem::path& folder, const std::string& display, std::vector<std::string> arguments)
+        : folder_(folder) {
+        arguments.insert(arguments.begin(), test::program("splice-view").string());
+        std::vector<char*> words;
+        for (std::string& argument : arguments)
+            words.push_back(argument.data());
+        words.push_back(nullptr);
+        process_ = fork();
+        if (process_ != 0) return;
+        if (chdir(folder.c_str()) != 0) _exit(126);
+        setenv("DISPLAY", display.c_str(), 1);
+        setenv("XDG_CONFIG_HOME", folder.c_str(), 1);
+        unsetenv("WAYLAND_DISPLAY");
+        if (std::freopen((folder / "out.txt").c_str(), "w", stdout) == nullptr) _exit(126);
+        if (std::freopen((folder / "err.txt").c_str(), "w", stderr) == nullptr) _exit(126);
+        execv(words[0], words.data());
+        _exit(127);
+    }
+    ~RunningViewer() {
+        if (process_ <= 0) return;
+        kill(process_, SIGKILL);
+        waitpid(process_, nullptr, 0);
+    }
+    RunningViewer(const RunningViewer&) = delete;
+    RunningViewer& operator=(const RunningViewer&) = delete;
+
+    /// The exit code, once it ended by itself; -1 where it did not.
+    int wait(double seconds = 120) {
+        for (int i = 0; i < static_cast<int>(seconds * 20); ++i) {
+            int status = 0;
+            if (waitpid(process_, &status, WNOHANG) == process_) {
+                process_ = -1;
+                return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+            }
+            usleep(50000);
+        }
+        return -1;
+    }
+    pid_t process() const { return process_; }
+    std::string err() const { return read_text(folder_ / "err.txt"); }
+    std::string out() const { return read_text(folder_ / "out.txt"); }
+
+  private:
+    std::filesystem::path folder_;
+    pid_t process_ = -1;
+};
+
+Picture scene_part(const Picture& window) {
+    return cropped(window, kPanel, 0, window.width - kPanel, window.height - kStatus);
+}
+
+// Runs the line that "copy camera" gives, and returns its picture.
+Picture captured_by(const std::filesystem::path& folder, const std::filesystem::path& line) {
+    const std::string command = read_text(line);
+    REQUIRE(command.starts_with("splice-capture "));
+    const std::string path = test::program("splice-capture").parent_path().string();
+    const test::Outcome outcome =
+        test::run({"/bin/sh",
+                   {"-c", "PATH='" + path + "':$PATH; " + command.substr(0, command.find('\n')) + " --quiet"},
+                   folder});
+    INFO(command << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return read_png(folder / "capture.png");
+}
+
+}  // namespace
+
+TEST_CASE("without a display it says so in a line and points to splice-capture") {
+    const test::TemporaryFolder folder;
+    const test::Outcome outcome = test::run({.program = test::program("splice-view"), .in_child = [] {
+                                                 unsetenv("DISPLAY");
+                                                 unsetenv("WAYLAND_DISPLAY");
+                                             }});
+    CHECK(outcome.exit_code == 1);
+    CHECK(test::line_count(outcome.err) == 1);
+    CHECK_THAT(outcome.err, Catch::StartsWith("splice-view: no display") && Catch::Contains("splice-capture"));
+}
+
+TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, screenshot, close") {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply");
+    write_model_file(folder / "knot.ply", folder / "knot.splice");
+    write_mesh_file(folder / "dropped.ply", 40);
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700"});
+    REQUIRE(display->find_window());
+    REQUIRE(display->wait_for_title("knot.splice - splice-view"));
+
+    // Loaded: something is there beside the background, and the interface stands where it should.
+    const Picture loaded = display->still_picture();
+    REQUIRE(loaded.width == 1000);
+    REQUIRE(loaded.height == 700);
+    const Picture scene = scene_part(loaded);
+    const Picture empty{scene.width, scene.height, std::vector<std::uint8_t>(scene.rgba.size(), 255)};
+    CHECK(difference(scene, empty) > 0.05);
+    CHECK(difference(scene, empty) < 0.9);
+
+    SECTION("the camera") {
+        display->drag(600, 300, 700, 340);
+        const Picture turned = display->still_picture();
+        CHECK(difference(scene_part(turned), scene) > 0.03);
+        display->move(650, 320);
+        display->wheel(3);
+        const Picture zoomed = display->still_picture();
+        CHECK(difference(scene_part(zoomed), empty) > difference(scene_part(turned), empty) * 1.2);
+        display->drag(600, 300, 640, 300, 2);
+        CHECK(difference(scene_part(display->still_picture()), scene_part(zoomed)) > 0.03);
+        display->key("f");
+        display->key("1");
+        const Picture front = display->still_picture();
+        display->key("7");
+        const Picture top = display->still_picture();
+        CHECK(difference(scene_part(front), scene_part(top)) > 0.03);
+        display->key("5");
+        CHECK(difference(scene_part(display->still_picture()), scene_part(top)) > 0.005);
+    }
+
+    SECTION("sizes") {
+        for (const auto& [width, height] : {std::pair{640U, 480U}, {1200U, 800U}}) {
+            display->resize(width, height);
+            const Picture resized = display->picture_when(
+                [&, w = width](const Picture& now) { return now.width == w && difference(now, now) == 0; });
+            CHECK(resized.width == width);
+            CHECK(resized.height == height);
+            const Picture right = cropped(resized, width - 200, 0, 200, height - kStatus);
+            // Drawn up to the edge: white background, not what the server fills new windows with.
+            const std::size_t corner = (std::size_t{4} * 199) + (std::size_t{4} * 200 * 2);
+            CHECK(right.rgba[corner] == 255);
+        }
+    }
+
+    SECTION("views") {
+        std::vector<Picture> seen{scene};
+        for (int i = 1; i < 12; ++i) {
+            display->key("v");
+            // A view's first picture may take long: its shaders are compiled.
+            seen.push_back(scene_part(display->picture_when(
+                [&](const Picture& now) { return difference(scene_part(now), seen.back()) > 0.001; })));
+        }
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            for (std::size_t j = i + 1; j < seen.size(); ++j) {
+                INFO("views " << i << " and " << j);
+                CHECK(difference(seen[i], seen[j]) > 0.001);
+            }
+        display->key("v");
+        CHECK(difference(scene_part(display->still_picture()), scene) == 0);
+    }
+
+    SECTION("files") {
+        write_text(folder / "broken.ply", "ply\nformat nonsense\n");
+        REQUIRE(display->drop(folder / "broken.ply", 600, 300));
+        const Picture with_message =
+            display->picture_when([&](const Picture& now) { return difference(scene_part(now), scene) > 0.005; });
+        CHECK(difference(scene_part(with_message), scene) > 0.005);
+        CHECK(display->title() == "knot.splice - splice-view");
+        display->key("Escape");
+
+        REQUIRE(display->drop(folder / "dropped.ply", 600, 300));
+        REQUIRE(display->wait_for_title("dropped.ply - splice-view"));
+        const Picture dropped = display->still_picture();
+        CHECK(difference(scene_part(dropped), scene) > 0.03);
+        display->key("r");
+        REQUIRE(display->wait_for_title("loading dropped.ply - splice-view", 10));
+        REQUIRE(display->wait_for_title("dropped.ply - splice-view"));
+        CHECK(difference(scene_part(display->still_picture()), scene_part(dropped)) == 0);
+        CHECK_THAT(viewer.err(), Catch::Contains("broken.ply"));
+    }
+
+    SECTION("screenshot") {
+        display->drag(600, 300, 540, 280);
+        const Picture turned = display->still_picture();
+        display->key("p");
+        display->picture_when([&](const Picture&) { return std::filesystem::exists(folder / "splice-view.png"); });
+        CHECK(difference(read_png(folder / "splice-view.png"), scene_part(turned)) == 0);
+        display->key("Escape");
+        display->key("Tab");
+        const Picture alone = display->still_picture();
+        display->key("p");
+        display->picture_when([&](const Picture&) {
+            return viewer.out().find("splice-view.png", viewer.out().find("splice-view.png") + 1) != std::string::npos;
+        });
+        const Picture taken = read_png(folder / "splice-view.png");
+        CHECK(taken.width == 1000);
+        CHECK(difference(cropped(taken, 0, 0, 1000, 400), cropped(alone, 0, 0, 1000, 400)) == 0);
+    }
+
+    display->ask_to_close();
+    CHECK(viewer.wait() == 0);
+    // The broken file's line is the only thing that may be said.
+    const std::string err = viewer.err();
+    CHECK((err.empty() || (test::line_count(err) == 1 && err.find("broken.ply") != std::string::npos)));
+    CHECK(std::filesystem::exists(folder / "splice" / "view.json"));
+}
+
+TEST_CASE("a script does the same, and its screenshots are splice-capture's pictures of the same camera") {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply");
+    write_model_file(folder / "knot.ply", folder / "knot.splice");
+    write_text(folder / "tour.txt",
+               "# every kind of hand\n"
+               "wait\n"
+               "drag left 600 300 700 350\n"
+               "move 640 300\nwheel 2\n"
+               "drag middle 600 300 620 310 3\n"
+               "wait\n"
+               "screenshot turned.png\nscreenshot-window window.png\ncamera-line turned.txt\n"
+               "key 5\nset epsilon 0.8\nset background \"#203040\"\nview depth\nwait\n"
+               "screenshot depth.png\ncamera-line depth.txt\n"
+               "view shaded\nset show triangles\nkey control+3\nwait\nscreenshot side.png\ncamera-line side.txt\n"
+               "compare wipe\nset wipe 0.25\nwait\nscreenshot-window wipe.png\n"
+               "compare side-by-side\nwait\nscreenshot-window both.png\ncompare off\n"
+               "bookmark here\nkey 1\ngo here\nwait\nscreenshot again.png\nsave-scene saved.json\n"
+               "turntable 3 turn.png\nwait\n"
+               "click left 650 330\nframes 20\nquit\n");
+    RunningViewer viewer(
+        folder.path(), display->name(),
+        {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700", "--script", "tour.txt"});
+    REQUIRE(viewer.wait() == 0);
+    CHECK(viewer.err() == "");
+    for (const char* name : {"turned", "depth", "side"}) {
+        INFO(name);
+        const Picture shot = read_png(folder / (std::string(name) + ".png"));
+        CHECK(shot.width == 1000 - kPanel);
+        CHECK(difference(shot, captured_by(folder.path(), folder / (std::string(name) + ".txt"))) == 0);
+    }
+    const Picture turned = read_png(folder / "turned.png");
+    CHECK(difference(scene_part(read_png(folder / "window.png")), turned) == 0);
+    CHECK(difference(read_png(folder / "side.png"), turned) > 0.02);
+    CHECK(difference(read_png(folder / "again.png"), read_png(folder / "side.png")) == 0);
+    CHECK(difference(read_png(folder / "turn-000.png"), read_png(folder / "side.png")) == 0);
+    CHECK(difference(read_png(folder / "turn-001.png"), read_png(folder / "turn-002.png")) > 0.02);
+
+    // The saved scene shows what the window showed.
+    const test::Outcome outcome =
+        test::run({test::program("splice-capture"),
+                   {"saved.json", "-o", "saved.png", "--backend", "auto", "--show", "triangles"},
+                   folder.path()});
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(difference(read_png(folder / "saved.png"), read_png(folder / "side.png")) == 0);
+    CHECK_THAT(read_text(folder / "saved.json"), Catch::Contains("\"here\""));
+}
+
+TEST_CASE("a lost device is opened again once; the second loss ends the run") {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply");
+    const std::vector<std::string> arguments{"knot.ply", "--device", "cpu", "--size", "800x600", "--script", "-"};
+    const auto run = [&](const std::string& script) {
+        write_text(folder / "script.txt", script);
+        RunningViewer viewer(
+            folder.path(), display->name(),
+            {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
+        const int code = viewer.wait();
+        return std::pair{code, viewer.err()};
+    };
+    const auto [code, err] = run("wait\nscreenshot a.png\nlose-device\nwait\nscreenshot b.png\nquit\n");
+    CHECK(code == 0);
+    CHECK_THAT(err, Catch::Contains("opened again"));
+    CHECK(difference(read_png(folder / "a.png"), read_png(folder / "b.png")) == 0);
+    const auto [second_code, second_err] = run("wait\nlose-device\nwait\nlose-device\nwait\nquit\n");
+    CHECK(second_code == 1);
+    CHECK_THAT(second_err, Catch::Contains("lost twice"));
+}
+
+TEST_CASE("minimised and one pixel small, it waits and comes back") {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply", 40);
+    write_text(folder / "script.txt",
+               "wait\nscreenshot a.png\nresize 1 1\nframes 5\nresize 30 20\nframes 5\nresize 800 600\nframes 5\nwait\n"
+               "screenshot b.png\nquit\n");
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
+    CHECK(viewer.wait() == 0);
+    CHECK(viewer.err() == "");
+    CHECK(read_png(folder / "a.png").width == read_png(folder / "b.png").width);
+}
+
+TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves the last good ones") {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply", 40);
+    std::filesystem::copy(test::source_file("shaders/glsl"), folder / "glsl", std::filesystem::copy_options::recursive);
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--shaders", "glsl"});
+    REQUIRE(display->find_window());
+    REQUIRE(display->wait_for_title("knot.ply - splice-view"));
+    display->picture_when([&](const Picture&) { return viewer.out().find("compiled anew") != std::string::npos; });
+    display->key("Escape");
+    const Picture before = display->still_picture();
+    const std::string source = read_text(folder / "glsl" / "surfel_normalise.frag");
+    const std::size_t end = source.rfind('}');
+    REQUIRE(end != std::string::npos);
+    write_text(folder / "glsl" / "surfel_normalise.frag", source.substr(0, end) + "\nnot a statement\n}\n");
+    display->picture_when([&](const Picture&) { return !viewer.err().empty(); });
+    CHECK_THAT(viewer.err(), Catch::Contains("surfel_normalise.frag"));
+    write_text(folder / "glsl" / "surfel_normalise.frag", source);
+    display->picture_when([&](const Picture&) {
+        const std::string out = viewer.out();
+        return out.find("compiled anew", out.find("compiled anew") + 1) != std::string::npos;
+    });
+    display->key("Escape");
+    const Picture after = display->still_picture();
+    CHECK(difference(cropped(before, 240, 0, 500, 500), cropped(after, 240, 0, 500, 500)) == 0);
+    display->ask_to_close();
+    CHECK(viewer.wait() == 0);
+}
+
+namespace {
+
+std::uint64_t resident_kilobytes(pid_t process) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    for (std::string word; status >> word;) {
+        if (word != "VmRSS:") continue;
+        std::uint64_t kilobytes = 0;
+        status >> kilobytes;
+        return kilobytes;
+    }
+    return 0;
+}
+
+// Memory that frames of a moving camera leave behind, in kilobytes.
+std::int64_t growth_over(int frames) {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return 0;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply", 40);
+    std::string script = "wait\npress left\n";
+    const auto turn = [&](int count) {
+        for (int i = 0; i < count; ++i)
+            script += "move " + std::to_string(260 + i % 7 * 5) + " " + std::to_string(100 + i % 11 * 3) + "\n";
+    };
+    // The first frames make what later ones use again: resolutions, panels, lists.
+    turn(200);
+    script += "screenshot before.png\n";
+    turn(frames);
+    script += "screenshot after.png\nframes 1000000\n";
+    write_text(folder / "script.txt", script);
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.ply", "--device", "cpu", "--size", "420x300", "--script", "script.txt"});
+    const auto memory_at = [&](const char* picture) {
+        for (int i = 0; i < 40000 && !std::filesystem::exists(folder / picture); ++i)
+            usleep(20000);
+        REQUIRE(std::filesystem::exists(folder / picture));
+        return static_cast<std::int64_t>(resident_kilobytes(viewer.process()));
+    };
+    const std::int64_t before = memory_at("before.png");
+    REQUIRE(before > 0);
+    return memory_at("after.png") - before;
+}
+
+}  // namespace
+
+TEST_CASE("frames of a moving camera leave no memory behind") {
+    CHECK(growth_over(400) < 4096);
+}
+
+TEST_CASE("ten thousand frames of a moving camera leave no memory behind", "[.long]") {
+    CHECK(growth_over(10000) < 4096);
+}
+
+TEST_CASE("usage: what is not understood ends the run with 2 before a window opens") {
+    struct Wrong {
+        std::vector<std::string> arguments;
+        std::string said;
+    };
+    for (const Wrong& wrong : {Wrong{{"--present-mode", "fast"}, "--present-mode"}, Wrong{{"--size", "0x3"}, "--size"},
+                               Wrong{{"--nonsense"}, "--nonsense"}}) {
+        const test::Outcome outcome = test::run({test::program("splice-view"), wrong.arguments});
+        CHECK(outcome.exit_code == 2);
+        CHECK(test::line_count(outcome.err) == 1);
+        CHECK_THAT(outcome.err, Catch::Contains(wrong.said));
+    }
+    CHECK(test::run({test::program("splice-view"), {"--help"}}).exit_code == 0);
+}

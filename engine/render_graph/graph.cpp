@@ -90,18 +90,20 @@ uint32_t Graph::add_resource(std::string_view name, ResourceDeclaration declarat
         declaration.imported = true;
         declaration.import = static_cast<uint32_t>(declaration_.imports.size());
         declaration_.imports.push_back(*import);
-        for (const ExternalUse& use : {import->before, import->after}) {
-            key_.resources.add(use.scope.stages);
-            key_.resources.add(use.scope.access);
-            key_.resources.add(static_cast<uint64_t>(use.layout));
-        }
-        key_.resources.add(import->wanted ? 1 : 0);
         state.has_contents =
             declaration.kind == ResourceKind::buffer || import->before.layout != VK_IMAGE_LAYOUT_UNDEFINED;
     }
     const auto index = static_cast<uint32_t>(declaration_.resources.size());
     declaration_.resources.push_back(declaration);
     key_.resources.add_bytes(declaration);
+    if (import) {
+        for (const ExternalUse& use : {import->before, import->after}) {
+            key_.resources.add(use.scope.stages);
+            key_.resources.add(use.scope.access);
+            key_.resources.add(static_cast<uint64_t>(use.layout));
+        }
+        key_.resources.add(import->wanted ? 1 : 0);
+    }
     resource_names_.emplace_back(name);
     initial_values_.emplace_back();
     states_.push_back(state);
@@ -153,7 +155,7 @@ Pass Graph::add_pass(std::string_view name, PassKind kind) {
     pass.kind = kind;
     pass.first_access = static_cast<uint32_t>(declaration_.accesses.size());
     declaration_.passes.push_back(pass);
-    key_.passes.add(static_cast<uint64_t>(kind));
+    key_.passes.add(uint64_t{pass.first_access} << 8 | static_cast<uint64_t>(kind));
     pass_names_.emplace_back(name);
     functions_.emplace_back();
     return {this, static_cast<uint32_t>(declaration_.passes.size() - 1)};
@@ -201,7 +203,7 @@ uint32_t Graph::add_access(uint32_t pass, ResourceKind resource_kind, uint32_t r
     check_access(pass, access);
     const auto index = static_cast<uint32_t>(declaration_.accesses.size());
     declaration_.accesses.push_back(access);
-    key_.passes.add_bytes(access);
+    key_.accesses.add_bytes(access);
     clear_values_.push_back(contents.value);
     ++declared.access_count;
     ResourceState& state = states_[resource];

@@ -61,9 +61,21 @@ struct Executor::State {
     std::vector<VkClearValue> clear_values;
 };
 
+namespace {
+
+/// The key decides; the sizes keep a plan from naming passes or resources that the graph does not have, whatever the
+/// key is worth.
+bool is_of(const CompiledFrame& frame, const Graph& graph) {
+    const Declaration &a = frame.declaration(), &b = graph.declaration();
+    return frame.key() == graph.key() && a.passes.size() == b.passes.size() && a.accesses.size() == b.accesses.size() &&
+           a.resources.size() == b.resources.size();
+}
+
+}  // namespace
+
 CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
     for (const auto& frame : frames) {
-        if (!(frame->key() == graph.key())) continue;
+        if (!is_of(*frame, graph)) continue;
         assert(frame->declaration() == graph.declaration());
         return *frame;
     }
@@ -76,7 +88,8 @@ CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
     }
     const uint64_t render_passes_before = render_passes.created();
     frames.push_back(
-        std::make_unique<CompiledFrame>(*device, render_passes, options, graph, ++statistics.compilations));
+        std::make_unique<CompiledFrame>(*device, render_passes, options, graph, statistics.compilations + 1));
+    ++statistics.compilations;
     statistics.objects_created += render_passes.created() - render_passes_before;
     return *frames.back();
 }

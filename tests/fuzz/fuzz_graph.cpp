@@ -253,17 +253,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.alias = (switches & 4) == 0;
     options.batch_barriers = (switches & 8) == 0;
     if ((switches & 16) != 0) options.random_order = bytes.take(256);
-    std::vector<uint64_t> sizes;
-    options.memory = [&](uint32_t resource, const graph::PlannedResource&) {
-        return graph::MemoryRequirement{sizes[resource], 64, 1};
-    };
+    std::vector<graph::MemoryRequirement> memory;
+    options.memory = [&](uint32_t resource, const graph::PlannedResource&) { return memory[resource]; };
     graph::Graph graph;
     Declarer(bytes).run(graph);
     for (uint64_t resource = 0; resource < graph.declaration().resources.size(); ++resource)
-        sizes.push_back(100 + resource * resource * 37 % 1000);
+        memory.push_back({100 + resource * resource * 37 % 1000, 64, 1});
     Declarer::attempt("pass 'p", [&] {
         const graph::Plan plan = graph::compile(graph, options);
-        for (const std::string& problem : test::find_hazards(graph, plan, sizes))
+        for (const std::string& problem : test::find_hazards(graph, plan, memory))
             require(false, problem);
     });
     return 0;

@@ -1,5 +1,6 @@
 #include "tests/render_graph/random_graph.h"
 
+#include <random>
 #include <string>
 
 namespace splice::test {
@@ -263,6 +264,14 @@ class Declarer {
 void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape,
                     const std::function<graph::RecordFunction(uint32_t pass)>& record) {
     Declarer(graph, tape, record).run();
+}
+
+std::vector<uint32_t> random_tape(size_t length, uint32_t seed) {
+    std::minstd_rand random(seed);
+    std::vector<uint32_t> tape(length);
+    for (uint32_t& number : tape)
+        number = static_cast<uint32_t>(random()) >> 3;
+    return tape;
 }
 
 std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed) {

@@ -4,6 +4,7 @@
 #include "engine/render_graph/compile.h"
 #include "engine/render_graph/graph.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -15,6 +16,9 @@ namespace splice::test {
 /// `record` gives each pass its record function; empty: none.
 void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape,
                     const std::function<graph::RecordFunction(uint32_t pass)>& record = {});
+
+/// The same numbers for the same seed on every machine.
+std::vector<uint32_t> random_tape(size_t length, uint32_t seed);
 
 /// Made-up sizes of the resources, log-uniform from 256 bytes to 16 MiB, in two memory types.
 std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed);

@@ -20,7 +20,6 @@ struct Frame {
     std::vector<graph::MemoryRequirement> memory;
     graph::CompileOptions options;
     graph::Plan plan;
-    std::vector<uint64_t> sizes;
 };
 
 /// A random frame of at most about 1.3 `passes` passes with random switches.
@@ -48,8 +47,6 @@ std::unique_ptr<Frame> random_frame(int passes) {
             return (*memory)[resource];
         };
     }
-    for (const graph::MemoryRequirement& memory : frame->memory)
-        frame->sizes.push_back(memory.size);
     frame->options.max_input_attachments = 16;
     frame->plan = graph::compile(frame->graph, frame->options);
     return frame;
@@ -120,7 +117,7 @@ TEST_CASE("a compiled random frame has no hazard, no wrong layout and no lost co
     REQUIRE(rc::check("no hazards", [] {
         const auto frame = random_frame(200);
         RC_TAG(frame->plan.order.size() / 10 * 10);
-        const std::vector<std::string> problems = test::find_hazards(frame->graph, frame->plan, frame->sizes);
+        const std::vector<std::string> problems = test::find_hazards(frame->graph, frame->plan, frame->memory);
         if (!problems.empty()) RC_FAIL(joined(problems));
     }));
 }
@@ -168,7 +165,7 @@ TEST_CASE("no barrier is redundant: the checker misses each one that is dropped"
                     // Made to do nothing, which keeps all ranges valid.
                     list[at].source = list[at].destination = {};
                     if constexpr (requires { list[at].old_layout; }) list[at].old_layout = list[at].new_layout;
-                    if (test::find_hazards(frame->graph, mutant, frame->sizes).empty()) {
+                    if (test::find_hazards(frame->graph, mutant, frame->memory).empty()) {
                         RC_FAIL("a barrier of " + graph::quote_resource(frame->graph, list[at].resource) +
                                 " before group " + std::to_string(group) + " is not needed");
                     }
@@ -195,7 +192,7 @@ TEST_CASE("no dependency between subpasses is redundant, unless others lead the 
                 graph::Plan mutant = frame->plan;
                 graph::SubpassDependency& dropped = mutant.dependencies[render_pass.dependencies.first + i];
                 dropped.source_scope = dropped.destination_scope = {};
-                RC_ASSERT(!test::find_hazards(frame->graph, mutant, frame->sizes).empty());
+                RC_ASSERT(!test::find_hazards(frame->graph, mutant, frame->memory).empty());
             }
         }
     }));
@@ -210,16 +207,16 @@ TEST_CASE("a resource moved onto another that is alive is caught") {
                 if (a == b || resources[a].heap == graph::none || resources[a].heap != resources[b].heap) continue;
                 const graph::Lifetime &x = resources[a].lifetime, &y = resources[b].lifetime;
                 const bool apart = x.last_group < y.first_group || y.last_group < x.first_group;
-                const bool disjoint = resources[a].offset + frame->sizes[a] <= resources[b].offset ||
-                                      resources[b].offset + frame->sizes[b] <= resources[a].offset;
+                const bool disjoint = resources[a].offset + frame->memory[a].size <= resources[b].offset ||
+                                      resources[b].offset + frame->memory[b].size <= resources[a].offset;
                 RC_ASSERT(disjoint || (apart && frame->options.alias));
                 RC_ASSERT(resources[a].offset % frame->memory[a].alignment == 0);
-                RC_ASSERT(resources[a].offset + frame->sizes[a] <= frame->plan.heaps[resources[a].heap].size);
+                RC_ASSERT(resources[a].offset + frame->memory[a].size <= frame->plan.heaps[resources[a].heap].size);
                 // b begins within a's life, and what a holds then is needed later.
                 if (!(x.first_group < y.first_group && needs_contents_after(*frame, a, y.first_group))) continue;
                 graph::Plan mutant = frame->plan;
                 mutant.resources[b].offset = mutant.resources[a].offset;
-                RC_ASSERT(!test::find_hazards(frame->graph, mutant, frame->sizes).empty());
+                RC_ASSERT(!test::find_hazards(frame->graph, mutant, frame->memory).empty());
             }
         }
     }));

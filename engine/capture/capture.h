@@ -8,6 +8,7 @@
 //   Frame frame = renderer.render(scene_of(model), settings);
 #pragma once
 
+#include "engine/render_graph/executor/executor.h"
 #include "engine/render_graph/export/export.h"
 #include "engine/scene/backend.h"
 #include "engine/scene/camera.h"
@@ -27,6 +28,7 @@ namespace splice {
 struct RendererOptions {
     std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
     bool validate = false;        // validation and synchronisation-validation layers
+    graph::ExecutorOptions graph = {};  // switches of the render graph, and what it measures of each pass
 };
 
 struct CaptureSettings {
@@ -48,6 +50,7 @@ struct CaptureSettings {
 struct PassTime {
     std::string name;
     double gpu_ms;
+    std::optional<gpu::PipelineCounts> counts;  // with RendererOptions::graph.pipeline_statistics, where there are any
 };
 
 struct FrameStats {

@@ -18,7 +18,7 @@ struct Renderer::Implementation {
     explicit Implementation(const RendererOptions& options)
         : instance({.validate = options.validate}),
           device(instance, {.choice = gpu::parse_device_choice(options.device)}),
-          executor(device),
+          executor(device, options.graph),
           passes(device) {}
 
     std::vector<std::byte> render_raw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
@@ -118,7 +118,7 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
         stats->frame_ms = elapsed.count();
         for (const graph::PassTiming& timing : executor.timings())
-            stats->passes.push_back({timing.name, timing.gpu_ms});
+            stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
         stats->backend = backend;
         stats->surfels_drawn = draws.surfels;
         stats->triangles_drawn = draws.triangles;

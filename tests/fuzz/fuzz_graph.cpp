@@ -37,6 +37,7 @@ class Declarer {
     explicit Declarer(Bytes& bytes) : bytes_(bytes) {}
 
     void run(graph::Graph& graph) {
+        graph_id_ = graph.id();
         constexpr std::uint32_t kMost = 48;  // of resources and of passes: the checker's time
         while (!bytes_.done()) {
             const std::uint32_t choice = bytes_.take(8);
@@ -133,7 +134,8 @@ class Declarer {
     template <typename Handle>
     Handle& some(std::vector<Handle>& handles) {
         const std::uint32_t at = bytes_.take(64);
-        spoiled<Handle>() = handles.empty() ? Handle{at, 0} : handles[at % handles.size()];
+        spoiled<Handle>() =
+            handles.empty() ? Handle{at, 0, bytes_.take(2) == 0 ? graph_id_ : 0} : handles[at % handles.size()];
         switch (handles.empty() ? 0 : bytes_.take(24)) {
             case 0:
                 return spoiled<Handle>();
@@ -235,6 +237,7 @@ class Declarer {
     }
 
     Bytes& bytes_;
+    uint32_t graph_id_ = 0;
     std::vector<graph::ImageHandle> images_;
     std::vector<graph::BufferHandle> buffers_;
     graph::ImageHandle spoiled_image_;

@@ -155,7 +155,14 @@ TEST_CASE("bindings that are missing or do not match are refused by name") {
     bindings.bind(target, image);
     CHECK_THROWS_WITH(execute(bindings), Catch::Contains("image 'target'") && Catch::Contains("usage"));
     declare(9);
-    CHECK_THROWS_WITH(execute(bindings), Catch::Contains("image 'target'") && Catch::Contains("size"));
+    CHECK_THROWS_WITH(execute(bindings), Catch::Contains("image 'target'") && Catch::Contains("8 x 8 pixels") &&
+                                             Catch::Contains("declaration, 9 x 8 pixels"));
+    const graph::ImageHandle unknown{7, 0, graph.id()};
+    graph::Bindings wrong;
+    wrong.bind(unknown, image);
+    CHECK_THROWS_WITH(execute(wrong), Catch::Contains("resource 7 of 1") && Catch::Contains("import_image"));
+    CHECK_THROWS_WITH(executor.execute(graph, bindings, VK_NULL_HANDLE, 3),
+                      Catch::Contains("frame slot 3") && Catch::Contains("slots 0 to 0"));
     CHECK(gpu.complaints().empty());
 }
 

@@ -35,7 +35,7 @@ Imported make_imported(gpu::Device& device, const graph::Graph& graph) {
                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                                VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
                                                VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT});
-            imported.bindings.bind(graph::BufferHandle{resource, 0}, imported.buffers.back());
+            imported.bindings.bind(graph.buffer(resource), imported.buffers.back());
             continue;
         }
         gpu::ImageOptions options;
@@ -48,7 +48,7 @@ Imported make_imported(gpu::Device& device, const graph::Graph& graph) {
                              ? VkImageUsageFlags{VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}
                              : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
         imported.images.emplace_back(device, options);
-        imported.bindings.bind(graph::ImageHandle{resource, 0}, imported.images.back());
+        imported.bindings.bind(graph.image(resource), imported.images.back());
     }
     return imported;
 }

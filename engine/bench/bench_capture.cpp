@@ -89,6 +89,7 @@ json bench_capture(const std::vector<BenchModel>& models, const QualityOptions& 
             settings.epsilon_scale = options.epsilon_scale;
             settings.sides = options.sides;
             settings.prefilter = options.prefilter;
+            settings.antialias = options.antialias;
             settings.want_overlap = true;
             const Frame hybrid_frame = renderer.render(hybrid_scene, settings);
             const Frame triangle_frame = renderer.render(triangle_scene, settings);

@@ -18,6 +18,7 @@ struct QualityOptions {
     double epsilon_scale = 1;
     Sides sides = Sides::kAsBaked;
     bool prefilter = true;
+    std::uint32_t antialias = 1;  // samples along each side of a pixel
     BakeOptions bake;
     std::filesystem::path pictures;  // empty: none are written
 };

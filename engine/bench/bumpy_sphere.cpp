@@ -81,7 +81,7 @@ Model bumpy_sphere(std::uint32_t count, double depth) {
             model.patches.push_back(patch);
         }
         format::Surfel surfel = surfel_of(sample, depth);
-        surfel.patch = static_cast<std::uint32_t>(model.patches.size() - 1);
+        surfel.patch = static_cast<std::uint16_t>(model.patches.size() - 1);
         format::Patch& patch = model.patches.back();
         const float radius = float_from_half(surfel.radius);
         for (int axis = 0; axis < 3; ++axis) {

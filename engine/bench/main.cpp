@@ -4,6 +4,8 @@
 #include "engine/bench/bench_frame.h"
 #include "engine/bench/bench_quality.h"
 #include "engine/bench/graph/graph_command.h"
+#include "engine/bench/quality_command.h"
+#include "engine/scene/scene_file.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
@@ -124,6 +126,11 @@ int run(int argc, char** argv) {
     capture.add_option("--frames", capture_line.quality.frames, "Timed frames a model, 1 to 100000")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
+    capture
+        .add_option("--antialias", capture_line.quality.antialias,
+                    "Samples along each side of a pixel, of the pictures and not of the times, 1 to 8")
+        ->check(CLI::Range(1U, kMostSamplesPerSide))
+        ->capture_default_str();
     capture.add_flag_callback(
         "--no-prefilter", [&] { capture_line.quality.prefilter = false; }, "Splats without the screen-space filter");
 
@@ -142,7 +149,15 @@ int run(int argc, char** argv) {
     bench::GraphCommand graph_command;
     const CLI::App& graph = bench::add_graph_command(app, graph_command);
 
+    bench::QualityCommand quality_command;
+    quality_command.folder = default_folder();
+    const CLI::App& quality = bench::add_quality_command(app, quality_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (quality.parsed()) {
+        bench::run_quality_command(quality_command);
+        return 0;
+    }
     if (graph.parsed()) {
         bench::run_graph_command(graph_command);
         return 0;

@@ -14,6 +14,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/shading.h"
 #include "engine/scene/view.h"
 #include "preprocess/model_format/model.h"
 
@@ -39,6 +40,8 @@ struct CaptureSettings {
     Sides sides = Sides::kAsBaked;
     double epsilon_scale = 1;                         // thesis 4.3.1 uses 0.75..1.5; times each surfel's own epsilon
     bool prefilter = true;                            // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
+    std::uint32_t antialias = 1;                      // samples along each side of a pixel; of pictures, not of numbers
+    Shading shading = Shading::kSurfel;               // where light is computed
     bool want_depth = false;                          // fill Frame::depth
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
@@ -56,18 +59,20 @@ struct PassTime {
 struct FrameStats {
     std::string device;
     Backend backend = Backend::kSprite;  // that drew the frame
-    double frame_ms = 0;                 // submission to completion of the frame, readback included
-    std::vector<PassTime> passes;        // in order of execution
-    std::uint64_t surfels_drawn = 0;     // sent to the device after culling by patch
+    Shading shading = Shading::kSurfel;
+    std::uint32_t antialias = 1;      // samples along each side of a pixel
+    double frame_ms = 0;              // submission to completion of the frame, readback included
+    std::vector<PassTime> passes;     // in order of execution
+    std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
     std::uint64_t triangles_drawn = 0;
-    std::uint64_t covered_pixels = 0;
-    double overlap_mean = 0;  // surfels contributing to a pixel, over pixels with any; with want_overlap
+    std::uint64_t covered_pixels = 0;  // at least by half
+    double overlap_mean = 0;           // surfels contributing to a pixel, over pixels with any; with want_overlap
 };
 
 struct Frame {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> rgba;      // sRGB-encoded, rows top to bottom; alpha 255, or coverage where transparent
-    std::vector<std::uint8_t> coverage;  // one a pixel: 255 where a surface is, else 0
+    std::vector<std::uint8_t> coverage;  // one a pixel: the share of it that surfaces cover, 255 for all of it
     std::vector<float> depth;            // with want_depth: distance along the view axis to the surface itself (epsilon
                                          // taken off), world units; infinite where there is none
     std::string graph;                   // with want_graph: the frame's render graph and its plan

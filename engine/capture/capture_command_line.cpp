@@ -120,7 +120,7 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        background, epsilon_scale, prefilter, graph_switch;
+        background, epsilon_scale, prefilter, antialias, shading, graph_switch;
     bool one_sided = false, two_sided = false;
 };
 
@@ -146,6 +146,16 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
     if (!raw.prefilter.empty()) command.prefilter = parse_switch(raw.prefilter, "--prefilter");
+    if (!raw.shading.empty()) {
+        command.shading = shading_of_name(raw.shading);
+        if (!command.shading) throw UsageError("--shading: expected surfel or deferred, got \"" + raw.shading + "\"");
+    }
+    if (!raw.antialias.empty()) {
+        const double side = parse_in_range(raw.antialias, "--antialias", 1, kMostSamplesPerSide, "");
+        if (side != std::floor(side))
+            throw UsageError("--antialias: expected a whole number, got \"" + raw.antialias + "\"");
+        command.antialias = static_cast<std::uint32_t>(side);
+    }
     if (!raw.stats.empty()) command.stats = raw.stats;
     if (!raw.graph.empty()) {
         if (!graph::export_format_of(raw.graph))
@@ -228,6 +238,12 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
         ->option_text("FACTOR");
     app.add_option("--prefilter", raw.prefilter, "EWA's screen-space low-pass filter, default on")
         ->option_text("on|off");
+    app.add_option("--shading", raw.shading,
+                   "Light at surfels, to first order (surfel, default), or once a pixel (deferred)")
+        ->option_text("surfel|deferred");
+    app.add_option("--antialias", raw.antialias,
+                   "N x N samples a pixel, 1 to 8, default 1: outlines are smooth and stay in place; slower")
+        ->option_text("N");
     app.add_option("--stats", raw.stats,
                    "Write times and counts as JSON; the frame is rendered twice, the second timed")
         ->option_text("FILE");

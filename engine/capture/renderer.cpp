@@ -64,6 +64,11 @@ void check_settings(const CaptureSettings& settings, const VkPhysicalDeviceLimit
     if (settings.width == 0 || settings.height == 0 || settings.width > most || settings.height > most)
         throw UsageError("a picture of " + std::to_string(settings.width) + "x" + std::to_string(settings.height) +
                          " pixels: each side must be 1 to " + std::to_string(most) + " on this device");
+    if (settings.antialias == 0 || std::max(settings.width, settings.height) > most / settings.antialias)
+        throw UsageError("a picture of " + std::to_string(settings.width) + "x" + std::to_string(settings.height) +
+                         " pixels with " + std::to_string(settings.antialias) +
+                         " samples along each: a side must be 1 to " + std::to_string(most) +
+                         " samples on this device");
 }
 
 }  // namespace
@@ -79,12 +84,15 @@ void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
 std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, const CaptureSettings& settings,
                                                             const Camera& camera, View view, FrameStats* stats) {
     const auto start = std::chrono::steady_clock::now();
-    const FrameSettings frame{.width = settings.width,
-                              .height = settings.height,
+    const std::uint32_t antialias = is_numeric(view) ? 1 : settings.antialias;
+    const FrameSettings frame{.width = settings.width * antialias,
+                              .height = settings.height * antialias,
+                              .antialias = antialias,
                               .camera = camera,
                               .view = view,
                               .epsilon_scale = settings.epsilon_scale,
-                              .prefilter = settings.prefilter};
+                              .prefilter = settings.prefilter,
+                              .shading = settings.shading};
     const DrawListOptions list_options{
         .sides = settings.sides,
         .draw_triangles =
@@ -93,8 +101,8 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0};
-    const DrawList draws = build_draw_list(scene, camera, settings.width, settings.height, list_options);
-    passes.data.update(frame, scene.lighting);
+    const DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
+    passes.data.update(frame, scene.lighting, scene.background);
 
     reserve_pixels(kTexelBytes * settings.width * settings.height);
     Backend backend = Backend::kAuto;
@@ -120,6 +128,8 @@ std::vector<std::byte> Renderer::Implementation::render_raw(const Scene& scene, 
         for (const graph::PassTiming& timing : executor.timings())
             stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
         stats->backend = backend;
+        stats->antialias = antialias;
+        stats->shading = settings.shading;
         stats->surfels_drawn = draws.surfels;
         stats->triangles_drawn = draws.triangles;
     }
@@ -167,8 +177,8 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
             if (!background.transparent) frame.rgba[4 * i + 3] = 255;
         }
     }
-    frame.stats.covered_pixels =
-        static_cast<std::uint64_t>(std::count(frame.coverage.begin(), frame.coverage.end(), std::uint8_t{255}));
+    frame.stats.covered_pixels = static_cast<std::uint64_t>(
+        std::count_if(frame.coverage.begin(), frame.coverage.end(), [](std::uint8_t share) { return share >= 128; }));
     if (settings.want_depth && frame.depth.empty())
         frame.depth = floats_of(engine.render_raw(scene, settings, camera, View::kDepth, nullptr));
     if (settings.want_overlap && settings.view != View::kOverlap)

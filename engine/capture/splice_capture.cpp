@@ -38,6 +38,8 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.sides = command.sides.value_or(scene.sides);
     settings.epsilon_scale = command.epsilon_scale.value_or(scene.epsilon_scale);
     settings.prefilter = command.prefilter.value_or(scene.prefilter);
+    settings.shading = command.shading.value_or(scene.shading);
+    settings.antialias = command.antialias.value_or(scene.antialias);
     settings.want_overlap = command.stats.has_value();
     if (command.graph) settings.want_graph = graph::export_format_of(command.graph->string());
     return settings;

@@ -20,6 +20,8 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
     nlohmann::ordered_json json;
     json["device"] = stats.device;
     json["backend"] = name_of(stats.backend);
+    json["shading"] = name_of(stats.shading);
+    json["antialias"] = stats.antialias;
     json["frame_ms"] = stats.frame_ms;
     json["passes"] = nlohmann::ordered_json::array();
     for (const PassTime& pass : stats.passes)

@@ -18,7 +18,8 @@ FramePasses::FramePasses(gpu::Device& device)
       surfel_visibility(device, data),
       surfel_attribute(device, data),
       tile(device, data),
-      surfel_normalise(device, data) {}
+      surfel_normalise(device, data),
+      resolve(device, data) {}
 
 VkFormat picture_format(View view) {
     return is_numeric(view) ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
@@ -35,14 +36,18 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
     const auto image = [&](const char* name, VkFormat format) {
         return graph.create_image(name, {.format = format, .width = settings.width, .height = settings.height});
     };
+    const bool several = settings.antialias > 1;
     FrameTargets targets{
         // Half floats suffice for colours, not for depths.
         .triangle_colour = image("triangle_colour", is_numeric(settings.view) ? VK_FORMAT_R32G32B32A32_SFLOAT
                                                                               : VK_FORMAT_R16G16B16A16_SFLOAT),
         .depth = image("depth", passes.formats.depth_stencil),
         .accumulation = image("accumulation", passes.formats.accumulation),
-        .picture = image("picture", picture_format(settings.view)),
+        .normals = {},
+        .picture = several ? image("samples", kSampleFormat) : image("picture", picture_format(settings.view)),
     };
+
+    if (is_deferred(settings)) targets.normals = image("normals", passes.formats.accumulation);
 
     passes.triangle.add(graph, targets, settings, draws);
     if (backend == Backend::kTile) {
@@ -53,7 +58,11 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
         passes.surfel_attribute.add(graph, targets, settings, draws);
         passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kStencil);
     }
-    return targets.picture;
+    if (!several) return targets.picture;
+    const graph::ImageHandle picture = graph.create_image("picture", {.format = picture_format(settings.view),
+                                                                      .width = settings.width / settings.antialias,
+                                                                      .height = settings.height / settings.antialias});
+    return passes.resolve.add(graph, targets.picture, picture, empty_picture(settings.view, background));
 }
 
 }  // namespace splice

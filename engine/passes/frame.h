@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/passes/frame_data.h"
+#include "engine/passes/resolve_pass.h"
 #include "engine/passes/surfel_attribute_pass.h"
 #include "engine/passes/surfel_normalise_pass.h"
 #include "engine/passes/surfel_visibility_pass.h"
@@ -33,6 +34,7 @@ struct FramePasses {
     SurfelAttributePass surfel_attribute;
     TilePasses tile;
     SurfelNormalisePass surfel_normalise;
+    ResolvePass resolve;
 };
 
 /// What draws a frame: what was asked for where it can, else sprites; kAuto: tiles on software devices. Never kAuto.

@@ -30,6 +30,11 @@ bool is_numeric(View view) {
     return view == View::kDepth || view == View::kVisibility || view == View::kOverlap;
 }
 
+bool is_deferred(const FrameSettings& settings) {
+    return settings.shading == Shading::kDeferred && !is_numeric(settings.view) && settings.view != View::kNormals &&
+           settings.view != View::kAccumulation;
+}
+
 gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device) {
     const VkShaderStageFlags stages =
         VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
@@ -61,7 +66,7 @@ void FrameData::reserve_lights(std::size_t count) {
         .write(device_);
 }
 
-void FrameData::update(const FrameSettings& settings, const Lighting& lighting) {
+void FrameData::update(const FrameSettings& settings, const Lighting& lighting, const Background& background) {
     const Camera& camera = settings.camera;
     FrameUniforms uniforms{};
     uniforms.projection = glm::mat4(projection_matrix(camera, settings.width, settings.height));
@@ -74,8 +79,13 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting) 
     uniforms.light_count = static_cast<std::uint32_t>(lighting.lights.size());
     uniforms.specular = static_cast<float>(lighting.specular);
     uniforms.shininess = static_cast<float>(lighting.shininess);
+    uniforms.rim = static_cast<float>(lighting.rim);
+    uniforms.rim_exponent = static_cast<float>(lighting.rim_exponent);
+    uniforms.phong = lighting.highlight == HighlightModel::kPhong ? 1 : 0;
     uniforms.sample_share = kSampleShare;
     uniforms.sample_radius = kSampleRadius;
+    uniforms.background = glm::vec4(linear_light(background.colour), background.transparent ? 0 : 1);
+    uniforms.samples_per_side = settings.antialias;
     std::memcpy(uniforms_.mapped().data(), &uniforms, sizeof uniforms);
 
     const glm::dmat4 view = view_matrix(camera);
@@ -87,7 +97,7 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting) 
 }
 
 FrameVariant frame_variant(const FrameSettings& settings) {
-    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u};
+    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u, is_deferred(settings)};
 }
 
 std::map<std::uint32_t, std::uint32_t> frame_constants(const FrameSettings& settings) {

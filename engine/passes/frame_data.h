@@ -5,6 +5,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/shading.h"
 #include "engine/scene/view.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
@@ -18,12 +19,17 @@
 namespace splice {
 
 struct FrameSettings {
-    std::uint32_t width = 512, height = 512;  // pixels
+    std::uint32_t width = 512, height = 512;  // samples: pixels of the picture times antialias
+    std::uint32_t antialias = 1;              // samples along each side of a pixel
     Camera camera;
     View view = View::kShaded;
     double epsilon_scale = 1;
     bool prefilter = true;
+    Shading shading = Shading::kSurfel;
 };
+
+/// Whether normals and albedos are blended and lit afterwards: only where the view shows light.
+bool is_deferred(const FrameSettings& settings);
 
 /// Views of numbers fill a float target, the others an 8-bit one.
 bool is_numeric(View view);
@@ -36,7 +42,7 @@ class FrameData {
   public:
     explicit FrameData(gpu::Device& device);
     /// No submitted work may still read the frame before.
-    void update(const FrameSettings& settings, const Lighting& lighting);
+    void update(const FrameSettings& settings, const Lighting& lighting, const Background& background = {});
     VkDescriptorSet set() const { return set_; }
     const gpu::DescriptorSetLayout& layout() const { return layout_; }
 
@@ -50,10 +56,11 @@ class FrameData {
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl.
+/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl, and the attachments.
 struct FrameVariant {
     std::uint32_t view;
     std::uint32_t orthographic;
+    bool deferred;
     auto operator<=>(const FrameVariant&) const = default;
 };
 FrameVariant frame_variant(const FrameSettings& settings);

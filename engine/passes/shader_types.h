@@ -22,9 +22,14 @@ struct FrameUniforms {
     std::uint32_t light_count;
     float specular;
     float shininess;
+    float rim;
+    float rim_exponent;
+    glm::vec4 background;
+    std::uint32_t phong;
+    std::uint32_t samples_per_side;
     float padding[2];  // std140 rounds the block up to 16 bytes
 };
-static_assert(sizeof(FrameUniforms) == 128 && offsetof(FrameUniforms, ambient) == 96);
+static_assert(sizeof(FrameUniforms) == 160 && offsetof(FrameUniforms, ambient) == 96);
 
 struct LightRecord {
     glm::vec4 vector;

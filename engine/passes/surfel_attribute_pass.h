@@ -1,5 +1,5 @@
 // Subpass 3: lit colours of all surfels within epsilon of the visible surface, weighted by the EWA resampling filter
-// and summed (thesis 3.4.2, EWA filtering).
+// and summed (thesis 3.4.2, EWA filtering). Deferred: their normals and albedos, which the normalisation lights.
 #pragma once
 
 #include "engine/passes/frame_targets.h"
@@ -13,10 +13,10 @@ class SurfelAttributePass {
     void add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const DrawList& draws);
 
   private:
-    gpu::GraphicsPipelineOptions pipeline_options() const;
+    gpu::GraphicsPipelineOptions pipeline_options(bool deferred) const;
 
     SurfelPrimitives primitives_;
-    gpu::ShaderModule vertex_, fragment_;
+    gpu::ShaderModule vertex_, fragment_, deferred_vertex_, deferred_fragment_;
 };
 
 }  // namespace splice

@@ -1,5 +1,6 @@
 // Subpass 4: full screen; sums divided by weights where surfels own the pixel, triangles elsewhere (thesis 3.4.2,
-// normalization). Reads the other subpasses' results at its own pixel only.
+// normalization); with deferred shading, the mean normal and albedo are lit (Botsch et al. 2005). Reads the other
+// subpasses' results at its own pixel only.
 #pragma once
 
 #include "engine/passes/frame_data.h"
@@ -16,6 +17,9 @@ namespace splice {
 /// is a weight.
 enum class SurfelOwnership : std::uint32_t { kStencil, kWeight };
 
+/// What a picture holds where nothing is drawn.
+VkClearValue empty_picture(View view, const Background& background);
+
 class SurfelNormalisePass {
   public:
     SurfelNormalisePass(gpu::Device& device, const FrameData& data);
@@ -29,7 +33,7 @@ class SurfelNormalisePass {
     };
     void draw(const graph::PassContext& context, const FrameTargets& targets, const FrameSettings& settings,
               SurfelOwnership ownership);
-    VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets);
+    VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets, bool deferred);
     gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, SurfelOwnership ownership,
                                                   std::uint32_t owner) const;
 
@@ -37,10 +41,11 @@ class SurfelNormalisePass {
     const FrameData& data_;
     gpu::DescriptorSetLayout input_layout_;
     gpu::PipelineLayout layout_;
-    gpu::ShaderModule vertex_, fragment_;
+    gpu::ShaderModule vertex_, fragment_, deferred_fragment_;
     gpu::DescriptorPool pool_;
     Inputs inputs_;
-    std::map<std::tuple<FrameVariant, SurfelOwnership, std::uint32_t>, graph::PassPipelines> pipelines_;  // by owner
+    // By owner, and by whether samples are to be resolved.
+    std::map<std::tuple<FrameVariant, SurfelOwnership, std::uint32_t, bool>, graph::PassPipelines> pipelines_;
 };
 
 }  // namespace splice

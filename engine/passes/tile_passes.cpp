@@ -93,7 +93,7 @@ std::uint64_t TilePasses::entries_for(const DrawList& draws) const {
 
 bool TilePasses::can_draw(const FrameSettings& settings, const DrawList& draws) const {
     // The visibility view shows the depth buffer, which this backend does not write.
-    return supported_ && settings.view != View::kVisibility &&
+    return supported_ && settings.view != View::kVisibility && !is_deferred(settings) &&
            buffers_.fits(settings, draws.surfels, entries_for(draws));
 }
 

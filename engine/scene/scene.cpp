@@ -2,7 +2,14 @@
 
 #include "engine/scene/gpu_model.h"
 
+#include <cmath>
+
 namespace splice {
+
+glm::dvec3 linear_light(const glm::dvec3& encoded) {
+    const auto decode = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+    return {decode(encoded.r), decode(encoded.g), decode(encoded.b)};
+}
 
 Lighting default_lighting() {
     Lighting lighting;

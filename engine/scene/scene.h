@@ -36,12 +36,19 @@ struct Light {
     glm::dvec3 colour{1.0};                 // linear, may exceed 1
 };
 
-/// Ambient plus Lambert; specular (Blinn-Phong) is off unless asked for.
+/// What a highlight measures: the angle between the normal and the half vector (Blinn 1977), or between the mirrored
+/// light and the eye (Phong 1975).
+enum class HighlightModel { kBlinnPhong, kPhong };
+
+/// Ambient plus Lambert; highlights and the rim are off unless asked for.
 struct Lighting {
     glm::dvec3 ambient{0.12};  // linear
     std::vector<Light> lights;
-    double specular = 0;    // strength, 0 turns it off
-    double shininess = 32;  // Blinn-Phong exponent, >= 1
+    double specular = 0;    // strength, 0 turns highlights off
+    double shininess = 32;  // their exponent, >= 1
+    HighlightModel highlight = HighlightModel::kBlinnPhong;
+    double rim = 0;           // white added as rim (1 - n.v)^rim_exponent, whatever the lights; 0 turns it off
+    double rim_exponent = 3;  // >= 1
 };
 
 /// The lights that are used unless a scene names its own: one directional light over the viewer's left shoulder.
@@ -51,6 +58,9 @@ struct Background {
     glm::dvec3 colour{1.0};    // sRGB-encoded, 0..1
     bool transparent = false;  // alpha is coverage; colour is ignored
 };
+
+/// Of an sRGB-encoded colour.
+glm::dvec3 linear_light(const glm::dvec3& encoded);
 
 struct Scene {
     std::vector<Instance> instances;

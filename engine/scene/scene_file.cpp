@@ -22,16 +22,12 @@ namespace {
 
 constexpr double kLargest = 1e30;  // lengths beyond overflow single precision once squared
 
-double srgb_to_linear(double c) {
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 // A colour in a scene file: a name or #rrggbb (sRGB-encoded), or three linear numbers where light is meant.
 glm::dvec3 linear_colour(const JsonValue& value) {
     if (value.is_string()) {
         const auto colour = parse_colour(value.string());
         if (!colour) value.fail("a colour like \"#ff8000\"");
-        return {srgb_to_linear(colour->r), srgb_to_linear(colour->g), srgb_to_linear(colour->b)};
+        return linear_light(*colour);
     }
     const auto channel = [](const JsonValue& one) { return one.number(0, kLargest, "a number that is not negative"); };
     if (value.is_number()) return glm::dvec3(channel(value));
@@ -169,13 +165,20 @@ Light read_light(const JsonValue& value) {
 }
 
 Lighting read_lighting(const JsonValue& value) {
-    value.expect_members({"ambient", "specular", "shininess", "lights"});
+    value.expect_members({"ambient", "specular", "shininess", "highlight", "rim", "rim_exponent", "lights"});
     Lighting lighting = default_lighting();
     if (const auto ambient = value.member("ambient")) lighting.ambient = linear_colour(*ambient);
     if (const auto specular = value.member("specular"))
         lighting.specular = specular->number(0, kLargest, "a number that is not negative");
     if (const auto shininess = value.member("shininess"))
         lighting.shininess = shininess->number(1, 1e6, "a number from 1 to 1000000");
+    if (const auto highlight = value.member("highlight"))
+        lighting.highlight =
+            choice(*highlight, std::array<std::pair<std::string_view, HighlightModel>, 2>{
+                                   {{"blinn-phong", HighlightModel::kBlinnPhong}, {"phong", HighlightModel::kPhong}}});
+    if (const auto rim = value.member("rim")) lighting.rim = rim->number(0, kLargest, "a number that is not negative");
+    if (const auto exponent = value.member("rim_exponent"))
+        lighting.rim_exponent = exponent->number(1, 1e6, "a number from 1 to 1000000");
     if (const auto lights = value.member("lights")) {
         lighting.lights.clear();
         const std::size_t count = lights->array_size(0);
@@ -197,7 +200,7 @@ Background read_background(const JsonValue& value) {
 }
 
 void read_render(const JsonValue& value, SceneDescription& scene) {
-    value.expect_members({"size", "view", "sides", "epsilon_scale", "prefilter"});
+    value.expect_members({"size", "view", "sides", "epsilon_scale", "prefilter", "antialias", "shading"});
     constexpr std::uint32_t kLargestSide = 1u << 16;
     if (const auto size = value.member("size")) {
         size->array_size(2, 2);
@@ -217,6 +220,11 @@ void read_render(const JsonValue& value, SceneDescription& scene) {
     if (const auto epsilon = value.member("epsilon_scale"))
         scene.epsilon_scale = epsilon->number(0, 100, "a number from 0 to 100");
     if (const auto prefilter = value.member("prefilter")) scene.prefilter = prefilter->boolean();
+    if (const auto shading = value.member("shading"))
+        scene.shading = choice(*shading, std::array<std::pair<std::string_view, Shading>, 2>{
+                                             {{"surfel", Shading::kSurfel}, {"deferred", Shading::kDeferred}}});
+    if (const auto antialias = value.member("antialias"))
+        scene.antialias = antialias->whole_number(1, kMostSamplesPerSide);
 }
 
 std::size_t line_of(std::string_view text, std::size_t byte) {

@@ -5,6 +5,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/shading.h"
 #include "engine/scene/view.h"
 
 #include <cstdint>
@@ -17,6 +18,9 @@
 #include <vector>
 
 namespace splice {
+
+/// Of a pixel; more than this no eye tells from this.
+inline constexpr std::uint32_t kMostSamplesPerSide = 8;
 
 /// A procedural model: "kind" and its numbers, checked against what the kind takes.
 struct ShapeDescription {
@@ -47,6 +51,8 @@ struct SceneDescription {
     Sides sides = Sides::kAsBaked;
     double epsilon_scale = 1;
     bool prefilter = true;
+    std::uint32_t antialias = 1;
+    Shading shading = Shading::kSurfel;
 };
 
 /// Throws InputError("FILE: /path/of/value: expected ..., got ..."), SystemError.

@@ -241,7 +241,8 @@ void Assembler::add_surfels() {
                  {static_cast<std::uint8_t>(sample.colour), static_cast<std::uint8_t>(sample.colour >> 8),
                   static_cast<std::uint8_t>(sample.colour >> 16)},
                  {bend[0], bend[1], bend[2], bend[3], bend[4]},
-                 place});
+                 static_cast<std::uint16_t>(place),
+                 sample.clip});
         }
     }
 }

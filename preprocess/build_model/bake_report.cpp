@@ -56,16 +56,11 @@ std::string stats_json(const BakeStats& stats, const BakeResult& result) {
                       {"candidates", stats.surfel.candidates}, {"coverage_mean", stats.surfel.coverage_mean},
                       {"uncovered", stats.surfel.uncovered},   {"file_bytes", result.file_bytes}};
     json["selection"] = {{"auc", stats.cluster.selection_auc}};
-    json["seconds"] = {{"read", stats.seconds_read},
-                       {"repair", stats.seconds_repair},
-                       {"cluster", stats.seconds_cluster},
-                       {"judge", stats.cluster.seconds_judge},
-                       {"simplify", stats.seconds_simplify},
-                       {"sample", stats.seconds_sample},
-                       {"prune", stats.seconds_prune},
-                       {"assemble", stats.seconds_assemble},
-                       {"write", result.seconds_write},
-                       {"total", stats.seconds_total + result.seconds_write}};
+    json["seconds"] = {{"read", stats.seconds_read},         {"repair", stats.seconds_repair},
+                       {"cluster", stats.seconds_cluster},   {"judge", stats.cluster.seconds_judge},
+                       {"simplify", stats.seconds_simplify}, {"sample", stats.seconds_sample},
+                       {"prune", stats.seconds_prune},       {"assemble", stats.seconds_assemble},
+                       {"write", result.seconds_write},      {"total", stats.seconds_total + result.seconds_write}};
     json["peak_rss_bytes"] = result.peak_rss_bytes;
     json["warnings"] = stats.warnings;
     // File names in warnings need not be UTF-8.

@@ -90,7 +90,8 @@ struct Surfel {
     // s, t = tangents_of(normal) (tangent_frame.h), it is
     //   normal + (b0 + b2 u + b3 v) s + (b1 + b3 u + b4 v) t, normalised, b = shading_bend / 127 * kLargestBend.
     std::int8_t shading_bend[5];
-    std::uint32_t patch;  // index into kPatches
+    std::uint16_t patch;  // index into kPatches, its low 16 bits
+    std::uint16_t clip;   // surfel_clip.h: the line at which the disk is cut
 };
 static_assert(sizeof(Surfel) == 32 && offsetof(Surfel, shading_bend) == 23 && offsetof(Surfel, patch) == 28);
 

@@ -209,7 +209,8 @@ class Validator {
                         "surfel radius is not between 0 and the patch's largest");
                 require(epsilon >= 0 && epsilon <= patch.max_surfel_epsilon, surfel.extent,
                         "surfel epsilon is not between 0 and the patch's largest");
-                require(surfel.patch == p, surfel.patch, "surfel of patch ", p, " names patch ", surfel.patch);
+                require(surfel.patch == static_cast<std::uint16_t>(p), surfel.patch, "surfel of patch ", p, " names patch ",
+                        surfel.patch);
             }
         }
     }

@@ -1,6 +1,8 @@
 // Points are sorted into a grid and every disk looks up the points near it.
 #include "preprocess/surfel/coverage.h"
 
+#include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/tangent_frame.h"
 #include "preprocess/surfel/surface_point.h"
 
 #include <tbb/parallel_for.h>
@@ -82,9 +84,23 @@ std::vector<TestPoint> random_points(const IndexedMesh& mesh, const PatchSet& pa
 
 }  // namespace
 
+namespace {
+
+bool beyond_clip(const SurfelSample& surfel, const Vec3f& d) {
+    const Vec3f& n = surfel.normal;
+    const auto stored = decode_octahedral(encode_octahedral(n.x(), n.y(), n.z()));
+    const auto [s, t] = tangents_of(stored);
+    const SurfelClip clip = decode_clip(surfel.clip);
+    const float u = d.dot(Vec3f(s[0], s[1], s[2])), v = d.dot(Vec3f(t[0], t[1], t[2]));
+    return clip.x * u + clip.y * v > clip.offset * surfel.radius;
+}
+
+}  // namespace
+
 bool disk_covers(const SurfelSample& surfel, const Vec3f& point, const Vec3f& face_normal) {
     const Vec3f d = point - surfel.position;
     const float plane = d.dot(surfel.normal), radius2 = surfel.radius * surfel.radius;
+    if (surfel.clip != kNoClip && beyond_clip(surfel, d)) return false;
     return d.squaredNorm() - plane * plane <= radius2 && plane * plane <= radius2 &&
            surfel.normal.dot(face_normal) >= 0.5f;
 }

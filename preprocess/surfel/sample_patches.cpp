@@ -2,6 +2,7 @@
 // missing corners (figure 4.9).
 #include "preprocess/model_format/error.h"
 #include "preprocess/surfel/coverage.h"
+#include "preprocess/surfel/disk_clip.h"
 #include "preprocess/surfel/grid_sampling.h"
 #include "preprocess/surfel/morton.h"
 #include "preprocess/surfel/shading_bend.h"
@@ -50,6 +51,7 @@ struct Inputs {
     const SamplingOptions& options;
     const SpacingField* field;  // null: the thesis's spacing
     const SurfaceColour& colour;
+    const SmoothNeighbours& neighbours;
 };
 
 std::vector<CoverSite> thesis_sites(const IndexedMesh& mesh, std::span<const std::uint32_t> triangles, float h,
@@ -144,6 +146,9 @@ SampledPatch sample_patch(const Inputs& in, std::span<const std::uint32_t> trian
     const std::vector<ShadingBend> bends = fit_shading_bends(in.mesh, cells, sites);
     for (std::size_t s = 0; s < sites.size(); ++s)
         result.surfels[s].shading_bend = encode_shading_bend(bends[s], result.surfels[s].radius);
+    const std::vector<std::uint16_t> clips = fit_disk_clips(in.mesh, in.neighbours, cells, sites, owner);
+    for (std::size_t s = 0; s < sites.size(); ++s)
+        result.surfels[s].clip = clips[s];
     add_colours(in, cells, owner, material, result.surfels, sites);
     sort_by_morton_code(result.surfels);
     result.seconds = seconds_since(start);
@@ -161,7 +166,8 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
     std::optional<SpacingField> field;
     if (!options.thesis_c) field.emplace(mesh, options);
     const SurfaceColour colour(mesh);
-    const Inputs inputs{mesh, options, field ? &*field : nullptr, colour};
+    const SmoothNeighbours neighbours = find_smooth_neighbours(mesh);
+    const Inputs inputs{mesh, options, field ? &*field : nullptr, colour, neighbours};
     if (progress) progress("sample", 0.1);
 
     std::vector<SampledPatch> sampled(patches.patches.size());

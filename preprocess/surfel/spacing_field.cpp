@@ -19,7 +19,7 @@ constexpr float kSagitta = 1.0f / 14000;       // unit-box units
 constexpr float kTurnPerSpacing = 0.5f;        // radians, at most
 constexpr float kColourPerSpacing = 0.12f;     // of the distance from black to one primary, sRGB-encoded, at most
 constexpr float kFinestDetail = 1.0f / 512;    // no curvature or colour asks for less: a pixel of a small picture
-constexpr float kFeatureSpacing = 1.0f / 512;  // disks overhang an edge by about 0.3 spacings
+constexpr float kFeatureSpacing = 1.0f / 400;  // disks are cut at edges, but by one line only: corners overhang
 constexpr float kCreaseCosine = 0.94f;         // corner normals that differ by more than 20 degrees across an edge
 constexpr int kMaxGradingSweeps = 24;
 

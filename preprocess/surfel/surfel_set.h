@@ -2,6 +2,7 @@
 #pragma once
 
 #include "preprocess/cluster/patch_set.h"
+#include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/progress.h"
 
 #include <array>
@@ -17,6 +18,7 @@ struct SurfelSample {
     float epsilon;                              // see format::Surfel
     std::uint32_t colour;                       // sRGB RGBA8, texture and material included, filtered over the disk
     std::array<std::int8_t, 5> shading_bend{};  // see format::Surfel
+    std::uint16_t clip = kNoClip;               // surfel_clip.h
 };
 
 struct SurfelStats {

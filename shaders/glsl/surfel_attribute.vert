@@ -19,6 +19,7 @@ layout(location = 5) flat out vec3 out_colour_u;  // change a radius
 layout(location = 6) flat out vec3 out_colour_v;
 layout(location = 7) flat out vec3 out_skew;
 layout(location = 8) flat out vec2 out_swell;
+layout(location = 9) flat out vec4 out_clip;
 
 void main() {
     Splat splat;
@@ -34,5 +35,6 @@ void main() {
     out_colour_depth = vec4(colour.centre, splat.anchor_depth);
     out_skew = splat.skew;
     out_swell = splat.swell;
+    out_clip = splat.clip;
     out_rise_offset = vec3(flagged(splat.rise, is_sub_pixel(splat)), splat.plane_offset);
 }

@@ -8,6 +8,8 @@
 layout(constant_id = 0) const bool SURFELS = false;
 layout(constant_id = 3) const bool BY_WEIGHT = false;  // drawn once: surfels own the pixel where there is a weight
 
+layout(constant_id = 4) const bool TO_RESOLVE = false;  // linear samples instead of a picture
+
 layout(input_attachment_index = 0, set = 1, binding = 0) uniform subpassInput triangle_colour;
 layout(input_attachment_index = 1, set = 1, binding = 1) uniform subpassInput accumulation;
 layout(input_attachment_index = 2, set = 1, binding = 2) uniform subpassInput depth;
@@ -31,12 +33,13 @@ void main() {
         return;
     }
     const vec3 linear = surfels ? sum.rgb / sum.a : triangles.rgb;
-    if (VIEW == VIEW_DEPTH || VIEW == VIEW_NORMALS) {
+    if (VIEW == VIEW_DEPTH) {
         out_colour = vec4(linear, 1);
-    } else if (VIEW == VIEW_ACCUMULATION) {
-        // Half scale: two fully weighted splats reach white's level.
-        out_colour = vec4(encode_srgb(surfels ? 0.5 * sum.rgb : vec3(0)), 1);
+    } else if (VIEW == VIEW_NORMALS) {
+        out_colour = vec4(TO_RESOLVE ? decode_srgb(linear) : linear, 1);  // numbers, not light
     } else {
-        out_colour = vec4(encode_srgb(linear), 1);
+        // Half scale: two fully weighted splats reach white's level.
+        const vec3 light = VIEW == VIEW_ACCUMULATION ? (surfels ? 0.5 * sum.rgb : vec3(0)) : linear;
+        out_colour = vec4(TO_RESOLVE ? light : encode_srgb(light), 1);
     }
 }

@@ -15,6 +15,7 @@ layout(location = 1) flat out vec4 out_plane_map;
 layout(location = 2) flat out vec4 out_depth_epsilon_offset;
 layout(location = 3) flat out vec3 out_skew;
 layout(location = 4) flat out vec2 out_swell;
+layout(location = 5) flat out vec4 out_clip;
 
 void main() {
     Splat splat;
@@ -27,4 +28,5 @@ void main() {
         vec4(splat.anchor_depth, flagged(splat.epsilon, is_sub_pixel(splat)), splat.plane_offset);
     out_skew = splat.skew;
     out_swell = splat.swell;
+    out_clip = splat.clip;
 }

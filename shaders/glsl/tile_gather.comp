@@ -26,6 +26,8 @@ layout(set = 2, binding = 7, rgba32f) uniform writeonly image2D accumulation;
 // Relative to the tile's first pixel: value there, change a column, change a row.
 struct TilePlane {
     vec3 e, u, v;    // splat.glsl
+    vec3 past_clip;
+    float clip_change;  // perspective: less past_clip, over e
     float z;         // orthographic: e.x is 1 and z_step is how z changes
     vec2 z_step;
     vec2 skew;
@@ -39,6 +41,8 @@ TilePlane plane_in_tile(TileRecord record, vec2 d) {
     plane.e = ORTHOGRAPHIC ? vec3(1, 0, 0) : vec3(1 + gd, record.g);
     plane.u = vec3(dot(record.plane_map.xz, d), record.plane_map.xz) + record.plane_offset.x * plane.e;
     plane.v = vec3(dot(record.plane_map.yw, d), record.plane_map.yw) + record.plane_offset.y * plane.e;
+    plane.past_clip = record.clip.x * plane.u + record.clip.y * plane.v - record.clip.z * plane.e;
+    plane.clip_change = dot(record.clip.xy, record.skew) + (ORTHOGRAPHIC ? 0 : record.clip.z);
     plane.z = ORTHOGRAPHIC ? record.z + gd : record.z;
     plane.z_step = record.g;
     plane.skew = record.skew;
@@ -54,6 +58,8 @@ TilePlane hand_round(TilePlane mine, uint i) {
     plane.e = subgroupShuffle(mine.e, i);
     plane.u = subgroupShuffle(mine.u, i);
     plane.v = subgroupShuffle(mine.v, i);
+    plane.past_clip = subgroupShuffle(mine.past_clip, i);
+    plane.clip_change = subgroupShuffle(mine.clip_change, i);
     plane.z = subgroupShuffle(mine.z, i);
     plane.z_step = subgroupShuffle(mine.z_step, i);
     plane.skew = subgroupShuffle(mine.skew, i);
@@ -64,17 +70,18 @@ TilePlane hand_round(TilePlane mine, uint i) {
 
 // The values at a pixel.
 struct PixelPlane {
-    float e, u, v, z;
+    float e, u, v, z, past_clip;
 };
 
 PixelPlane at_column(TilePlane plane, float column) {
     return PixelPlane(plane.e.x + plane.e.y * column, plane.u.x + plane.u.y * column, plane.v.x + plane.v.y * column,
-                      plane.z + (ORTHOGRAPHIC ? plane.z_step.x * column : 0));
+                      plane.z + (ORTHOGRAPHIC ? plane.z_step.x * column : 0),
+                      plane.past_clip.x + plane.past_clip.y * column);
 }
 
 PixelPlane next_row(PixelPlane at, TilePlane plane) {
     return PixelPlane(at.e + plane.e.z, at.u + plane.u.z, at.v + plane.v.z,
-                      at.z + (ORTHOGRAPHIC ? plane.z_step.y : 0));
+                      at.z + (ORTHOGRAPHIC ? plane.z_step.y : 0), at.past_clip + plane.past_clip.z);
 }
 
 // cast_ray of splat.glsl without specks. `z`: perspective: the depth buffer value times `share`.
@@ -91,15 +98,23 @@ Meeting meet(PixelPlane at, TilePlane plane) {
     const float uu = at.u * at.u + at.v * at.v;
     const float z = ORTHOGRAPHIC ? at.z : plane.z * at.e;
     meeting.distance2 = uu;
-    meeting.on_disk = uu <= ee && at.e > 0 && z <= 1;
+    // Beyond the plane's horizon e is below 0.
+    const float past_clip = at.e < 0 ? -at.past_clip : at.past_clip;
+    meeting.on_disk = uu <= ee && at.e > 0 && past_clip <= 0 && z <= 1;
     const vec2 q = ORTHOGRAPHIC ? plane.skew : vec2(at.u + plane.skew.x * at.e, at.v + plane.skew.y * at.e);
     const float uq = at.u * q.x + at.v * q.y;
     const float qq = q.x * q.x + q.y * q.y;
     // The part of the solid in front of the near plane: z / (1 + gain) or z - gain climb is at most 1 there.
     const float near_gain = ORTHOGRAPHIC ? (z - 1) / plane.climb : z - 1;
     const bool grows = ORTHOGRAPHIC ? plane.climb > 0 : at.e > 0;
-    const float low = grows ? max(plane.h.x, near_gain) : plane.h.x;
-    const float high = grows ? plane.h.y : min(plane.h.y, near_gain);
+    float low = grows ? max(plane.h.x, near_gain) : plane.h.x;
+    float high = grows ? plane.h.y : min(plane.h.y, near_gain);
+    // And on the side of the clip line that is kept.
+    const float clip_change = plane.clip_change * (ORTHOGRAPHIC ? 1 : abs(at.e)) + (ORTHOGRAPHIC ? 0 : past_clip);
+    const float clip_gain = -past_clip / clip_change;
+    high = clip_change > 0 ? min(high, clip_gain) : high;
+    low = clip_change < 0 ? max(low, clip_gain) : low;
+    high = clip_change == 0 && past_clip > 0 ? low - 1 : high;
     const float gain = clamp(-uq / max(qq, 1e-30), low, high);
     meeting.beside_disk = !meeting.on_disk && low <= high && uu + gain * (2 * uq + gain * qq) <= ee;
     const float h = meeting.beside_disk ? gain : 0;
@@ -189,6 +204,7 @@ void main() {
             const uint i = findLSB(left);
             left &= left - 1;
             const TilePlane plane = hand_round(mine, i);
+            const float half_pixel_past = 0.25 * dot(plane.past_clip.yz, plane.past_clip.yz);
             const vec2 z_ends = subgroupShuffle(vec2(farthest_z, nearest_z), i);
             const vec3 conic_i = subgroupShuffle(conic, i);
             const vec2 d = subgroupShuffle(from_anchor, i) + vec2(lane, 0);
@@ -208,7 +224,8 @@ void main() {
                 const float exponent = min(meeting.on_disk ? meeting.distance2 * scale * scale : 1, ellipse);
                 const float z_gained = ORTHOGRAPHIC ? meeting.z : meeting.z / meeting.share;
                 const float z = clamp(z_gained, z_ends.x, z_ends.y);
-                const bool reached = (meeting.on_disk || meeting.beside_disk || ellipse < 1 || speck_pixel == int(lane) + row * int(TILE.x)) && z >= visible[row];
+                const bool cut_off = at.past_clip > 0 && at.past_clip * at.past_clip > half_pixel_past;
+                const bool reached = (meeting.on_disk || meeting.beside_disk || (ellipse < 1 && !cut_off) || speck_pixel == int(lane) + row * int(TILE.x)) && z >= visible[row];
                 const vec2 uv = meeting.nearest * scale;
                 if (VIEW == VIEW_OVERLAP) {
                     sum[row].a += reached ? 1 : 0;

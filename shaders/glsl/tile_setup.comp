@@ -26,7 +26,7 @@ struct StoredSurfel {  // format::Surfel
     uint normal;
     uint colour_bend_0;
     uint bend_1_4;
-    uint patch_number;
+    uint patch_clip;
 };
 layout(set = 1, binding = 0, std430) readonly buffer Surfels { StoredSurfel surfels[]; };
 
@@ -39,7 +39,8 @@ SurfelRecord decode(StoredSurfel stored) {
     record.colour = unpackUnorm4x8(stored.colour_bend_0).rgb;
     record.bend_0 = unpackSnorm4x8(stored.colour_bend_0).w;
     record.bend_1_4 = unpackSnorm4x8(stored.bend_1_4);
-    record.patch_number = stored.patch_number;
+    record.patch_number = stored.patch_clip & 0xffff;
+    record.clip = stored.patch_clip >> 16;
     return record;
 }
 
@@ -74,7 +75,7 @@ void record_surfel(uint index) {
     if (!surfel_splat(record, splat, surfel)) return;
     const uvec2 touched = touched_tiles(splat);
     if (touched.x == 0) return;
-    records[place] = pack_splat(splat, surfel_colour(record, surfel));
+    records[place] = pack_splat(record, splat, surfel_colour(record, surfel));
     splat_tiles[place] = touched;
 }
 

@@ -54,8 +54,9 @@ HandmadeModel& HandmadeModel::add_surfels(const std::vector<Disk>& disks) {
         surfel.normal = encode_octahedral(disk.normal.x, disk.normal.y, disk.normal.z);
         for (int channel = 0; channel < 3; ++channel)
             surfel.colour[channel] = static_cast<std::uint8_t>(disk.colour >> 8 * channel);
+        surfel.clip = disk.clip;
         surfel.extent = encode_extent({disk.above, disk.below, disk.epsilon}, float_from_half(surfel.radius));
-        surfel.patch = static_cast<std::uint32_t>(model_.patches.size());
+        surfel.patch = static_cast<std::uint16_t>(model_.patches.size());
         model_.surfels.push_back(surfel);
         extend(patch, disk.centre, float_from_half(surfel.radius));
         patch.max_surfel_radius = std::max(patch.max_surfel_radius, float_from_half(surfel.radius));

@@ -17,6 +17,7 @@ struct Disk {
     float epsilon;
     std::uint32_t colour = 0xffffffff;  // sRGB RGBA8, R in the lowest byte
     float above = 0, below = 0;         // see preprocess/model_format/surfel_extent.h
+    std::uint16_t clip = 0;             // preprocess/model_format/surfel_clip.h
 };
 
 struct Corner {

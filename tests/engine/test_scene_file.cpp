@@ -68,6 +68,18 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
          "scene.json: /models/0/colour: unknown member, expected one of file, shape, transform, unit_box, "
          "representation, "
          "triangle_share, max_spacing"},
+        {with(R"("lighting": {"highlight": "shiny"})"),
+         "scene.json: /lighting/highlight: expected one of \"blinn-phong\", \"phong\", got \"shiny\""},
+        {with(R"("lighting": {"rim": -1})"),
+         "scene.json: /lighting/rim: expected a number that is not negative, got -1"},
+        {with(R"("lighting": {"rim_exponent": 0})"),
+         "scene.json: /lighting/rim_exponent: expected a number from 1 to 1000000, got 0"},
+        {with(R"("render": {"shading": "cel"})"),
+         "scene.json: /render/shading: expected one of \"surfel\", \"deferred\", got \"cel\""},
+        {with(R"("render": {"antialias": 0})"),
+         "scene.json: /render/antialias: expected a whole number from 1 to 8, got 0"},
+        {with(R"("render": {"antialias": 9})"),
+         "scene.json: /render/antialias: expected a whole number from 1 to 8, got 9"},
         {with_model(R"("unit_box": 1)"), "scene.json: /models/0/unit_box: expected true or false, got 1"},
         {with_model(R"("representation": "points")"),
          "scene.json: /models/0/representation: expected one of \"hybrid\", \"triangles\", \"surfels\", got "
@@ -134,11 +146,13 @@ TEST_CASE("a scene that says everything is read as it says") {
             {"shape": {"kind": "torus-knot", "p": 3}, "unit_box": true, "representation": "surfels",
              "max_spacing": 0.5}],
         "camera": {"eye": [0, 0, 5], "target": [0, 0, 0], "up": [1, 0, 0], "fov": 30, "orthographic": true, "height": 4},
-        "lighting": {"ambient": [0.1, 0.2, 0.3], "specular": 0.5, "shininess": 8, "lights": [
+        "lighting": {"ambient": [0.1, 0.2, 0.3], "specular": 0.5, "shininess": 8, "highlight": "phong",
+                     "rim": 0.25, "rim_exponent": 5, "lights": [
             {"type": "point", "position": [1, 1, 1], "range": 2, "colour": "#ffffff", "intensity": 3},
             {"type": "directional", "direction": [0, -1, 0], "space": "camera", "colour": 0.5}]},
         "background": "#f80",
-        "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false}
+        "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false,
+                   "shading": "deferred", "antialias": 3}
     })",
                                                "scene.json", "folder");
     REQUIRE(scene.models.size() == 2);
@@ -162,6 +176,9 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK(scene.lighting.lights[0].colour == glm::dvec3(3));
     CHECK(scene.lighting.lights[1].space == LightSpace::kCamera);
     CHECK(scene.lighting.ambient == glm::dvec3(0.1, 0.2, 0.3));
+    CHECK(scene.lighting.highlight == HighlightModel::kPhong);
+    CHECK(scene.lighting.rim == 0.25);
+    CHECK(scene.lighting.rim_exponent == 5);
     CHECK(scene.background.colour.g == Approx(0x88 / 255.0));
     CHECK(scene.width == 320);
     CHECK(scene.height == 200);
@@ -169,6 +186,8 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK(scene.sides == Sides::kTwoSided);
     CHECK(scene.epsilon_scale == 1.5);
     CHECK_FALSE(scene.prefilter);
+    CHECK(scene.shading == Shading::kDeferred);
+    CHECK(scene.antialias == 3);
 }
 
 TEST_CASE("the scene format's example in the documentation is valid") {

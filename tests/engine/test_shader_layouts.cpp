@@ -4,7 +4,12 @@
 #include "engine/passes/tile_buffers.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/model_format/surfel_extent.h"
+#include "shaders/deferred_attribute_frag.h"
+#include "shaders/deferred_attribute_vert.h"
+#include "shaders/deferred_shade_frag.h"
+#include "shaders/resolve_frag.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
 #include "shaders/surfel_normalise_frag.h"
@@ -101,6 +106,10 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"surfel_visibility.vert", surfel_visibility_vert},
             {"surfel_visibility.frag", surfel_visibility_frag},
             {"surfel_normalise.frag", surfel_normalise_frag},
+            {"resolve.frag", resolve_frag},
+            {"deferred_attribute.vert", deferred_attribute_vert},
+            {"deferred_attribute.frag", deferred_attribute_frag},
+            {"deferred_shade.frag", deferred_shade_frag},
             {"tile_setup.comp", tile_setup_comp},
             {"tile_gather.comp", tile_gather_comp},
             {"triangle.vert", triangle_vert},
@@ -133,7 +142,9 @@ TEST_CASE("frame uniforms have the layout that the shaders declare") {
          {MEMBER(FrameUniforms, projection), MEMBER(FrameUniforms, viewport), MEMBER(FrameUniforms, pixel_scale),
           MEMBER(FrameUniforms, near_plane), MEMBER(FrameUniforms, far_plane), MEMBER(FrameUniforms, prefilter),
           MEMBER(FrameUniforms, sample_share), MEMBER(FrameUniforms, sample_radius), MEMBER(FrameUniforms, ambient),
-          MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess)}});
+          MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess),
+          MEMBER(FrameUniforms, rim), MEMBER(FrameUniforms, rim_exponent), MEMBER(FrameUniforms, background),
+          MEMBER(FrameUniforms, phong), MEMBER(FrameUniforms, samples_per_side)}});
 }
 
 TEST_CASE("light records have the layout that the shaders declare") {
@@ -161,7 +172,7 @@ TEST_CASE("tile uniforms have the layout that the shaders declare") {
 
 TEST_CASE("surfels and records of splats have the layout that the tile shaders declare") {
     using format::Surfel;
-    // In words: the radius with the extent, the colour with the first bend.
+    // In words: the radius with the extent, the colour with the first bend, the patch with the clip line.
     expect_everywhere(
         SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true,
         {sizeof(Surfel),
@@ -169,6 +180,7 @@ TEST_CASE("surfels and records of splats have the layout that the tile shaders d
           MEMBER(Surfel, normal), MEMBER(Surfel, colour), MEMBER(Surfel, shading_bend) + 1, MEMBER(Surfel, patch)}},
         1, 0);
     CHECK(offsetof(Surfel, extent) == offsetof(Surfel, radius) + 2);
+    CHECK(offsetof(Surfel, clip) == offsetof(Surfel, patch) + 2);
     CHECK(offsetof(Surfel, shading_bend) == offsetof(Surfel, colour) + 3);
     expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, true, {kTileRecordBytes, {0}}, 2, 1);
 }
@@ -198,6 +210,8 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    CHECK(constant("include/surfel_frame.glsl", "CLIP_DIRECTIONS") == kClipDirections);
+    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "CLIP_STEPS")) == kClipSteps);
     const double lean = constant("include/surfel_frame.glsl", "LARGEST_LEAN");
     const double turn = constant("include/surfel_frame.glsl", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));

@@ -50,6 +50,36 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
+TEST_CASE("shading and samples are chosen on the command line, else by the scene") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    write_text(folder / "scene.json",
+               R"({"models": [{"file": "a.splice"}], "render": {"shading": "deferred", "antialias": 2}})");
+    const auto stats = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"-o", "a.png", "--size", "40x30", "--stats", "a.json"});
+        const Outcome outcome = capture(folder, arguments);
+        CHECK(outcome.err == "");
+        REQUIRE(outcome.exit_code == 0);
+        const Picture picture = read_png(folder / "a.png");
+        CHECK(picture.width == 40);
+        CHECK(picture.height == 30);
+        const auto json = nlohmann::json::parse(read_text(folder / "a.json"));
+        return std::pair{json["shading"].get<std::string>(), json["antialias"].get<int>()};
+    };
+    CHECK(stats({"a.splice"}) == std::pair<std::string, int>("surfel", 1));
+    CHECK(stats({"scene.json"}) == std::pair<std::string, int>("deferred", 2));
+    CHECK(stats({"scene.json", "--shading", "surfel", "--antialias", "4"}) == std::pair<std::string, int>("surfel", 4));
+    for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+             {"--shading", "cel"}, {"--antialias", "0"}, {"--antialias", "9"}, {"--antialias", "1.5"}}) {
+        std::vector<std::string> arguments{"a.splice", "-o", "b.png"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        const Outcome outcome = capture(folder, arguments);
+        CHECK(outcome.exit_code == 2);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK_THAT(outcome.err, Catch::Contains(wrong.front()));
+    }
+}
+
 TEST_CASE("a model becomes a picture of the size asked for, with its statistics") {
     const TemporaryFolder folder;
     write_small_model(folder / "a.splice");

@@ -2,7 +2,10 @@
 // part of the cylinder over the disk that holds that surface. Held against an intersection in double precision.
 #include "engine/capture/capture.h"
 #include "preprocess/model_format/half.h"
+#include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/model_format/surfel_extent.h"
+#include "preprocess/model_format/tangent_frame.h"
 #include "tests/engine/handmade_model.h"
 #include "tests/engine/test_cameras.h"
 
@@ -20,8 +23,10 @@ constexpr std::uint32_t kSize = 160;
 // Single precision decides otherwise only where the truth is as close as this, in radii.
 constexpr double kUndecided = 3e-3;
 
-/// How near to the disk's axis the ray comes within the solid, in radii.
-double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dvec3& ray, double near_plane) {
+/// How near to the disk's axis the ray comes within the solid, in radii. `slack`: by how much farther out than it lies
+/// the clip line is taken to be, in radii.
+double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dvec3& ray, double near_plane,
+                       double slack) {
     const double radius = float_from_half(half_at_least(disk.radius));
     const SurfelExtent extent = decode_extent(
         encode_extent({disk.above, disk.below, disk.epsilon}, static_cast<float>(radius)), static_cast<float>(radius));
@@ -31,8 +36,17 @@ double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dv
     const glm::dvec3 across = from - start * n, along = ray - rise * n;
     const double length2 = std::max(glm::dot(along, along), 1e-30);
     // Depth is t: rays are as long as deep.
-    const double begin = std::max(std::min(t0, t1), near_plane), end = std::max(t0, t1);
-    if (begin > end) return std::numeric_limits<double>::infinity();
+    double begin = std::max(std::min(t0, t1), near_plane), end = std::max(t0, t1);
+    const SurfelClip clip = decode_clip(disk.clip);
+    const auto frame = tangents_of(decode_octahedral(
+        encode_octahedral(static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z))));
+    const glm::dvec3 outwards = double{clip.x} * glm::dvec3(frame.s[0], frame.s[1], frame.s[2]) +
+                                double{clip.y} * glm::dvec3(frame.t[0], frame.t[1], frame.t[2]);
+    const double past = glm::dot(outwards, from) - (double{clip.offset} + slack) * radius,
+                 change = glm::dot(outwards, ray);
+    if (change > 0) end = std::min(end, -past / change);
+    if (change < 0) begin = std::max(begin, -past / change);
+    if (begin > end || (change == 0 && past > 0)) return std::numeric_limits<double>::infinity();
     const double t = std::clamp(-glm::dot(across, along) / length2, begin, end);
     return glm::length(across + t * along) / radius;
 }
@@ -58,8 +72,10 @@ void check_cover(const Disk& disk, bool orthographic, bool quads, double near_pl
             const glm::dvec2 offset((x + 0.5 - size / 2.0) / scale, -(y + 0.5 - size / 2.0) / scale);
             const glm::dvec3 origin = orthographic ? glm::dvec3(offset, 0) : glm::dvec3(0);
             const glm::dvec3 ray = orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset, -1);
-            const double nearest = nearest_to_axis(disk, origin, ray, near_plane);
-            if (std::abs(nearest - 1) < kUndecided) continue;
+            const double nearest = nearest_to_axis(disk, origin, ray, near_plane, 0);
+            const double least = nearest_to_axis(disk, origin, ray, near_plane, kUndecided) - kUndecided,
+                         most = nearest_to_axis(disk, origin, ray, near_plane, -kUndecided) + kUndecided;
+            if (least < 1 && most >= 1) continue;
             const std::size_t i = std::size_t{y} * size + x;
             covered += frame.coverage[i] != 0 ? 1 : 0;
             wrong_cover += (frame.coverage[i] != 0) != (nearest < 1) ? 1 : 0;
@@ -83,6 +99,21 @@ TEST_CASE("a disk covers the surface that it stands for, from every side") {
                 CAPTURE(normal.x, normal.y, normal.z, orthographic, quads);
                 check_cover({{0.1f, 0.05f, -1.5f}, normal, 0.4f, 0.01f, kRed, 0.12f, 0.05f}, orthographic, quads);
                 check_cover({{0.1f, 0.05f, -1.5f}, normal, 0.4f, 0.01f, kRed, 0, 0.2f}, orthographic, quads);
+            }
+        }
+    }
+}
+
+TEST_CASE("a disk that is cut by a line shows up to there, thick or flat, from every side") {
+    const glm::vec3 normals[] = {{0, 0, 1}, {0, 1, 0.3f}, {1, 0.3f, 0.02f}, {-0.4f, 0.9f, -0.6f}};
+    for (const glm::vec3& normal : normals) {
+        for (const int direction : {0, 9, 30, 47}) {
+            for (const float offset : {0.0f, 0.35f, 0.8f}) {
+                const std::uint16_t clip = encode_clip(direction, offset);
+                const bool orthographic = direction % 2 != 0, quads = offset > 0.5f;
+                CAPTURE(normal.x, normal.y, normal.z, direction, offset);
+                check_cover({{0.1f, 0.05f, -1.5f}, normal, 0.4f, 0.01f, kRed, 0.12f, 0.05f, clip}, orthographic, quads);
+                check_cover({{0.1f, 0.05f, -1.5f}, normal, 0.4f, 0.01f, kRed, 0, 0, clip}, !orthographic, quads);
             }
         }
     }

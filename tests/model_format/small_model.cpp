@@ -48,14 +48,16 @@ Model small_model() {
                       kUp,
                       {255, 255, 255},
                       {0, 0, 0, 0, 0},
-                      1},
+                      1,
+                      0},
                      {{0.9f, 0.5f, 0},
                       half_at_least(0.2f),
                       encode_extent({0.01f, 0.001f, 0.25f}, 0.2f),
                       kUp,
                       {0, 255, 0},
                       {127, -5, 3, 0, 1},
-                      1}};
+                      1,
+                      0}};
 
     Patch triangles = patch_over(0, 0.5f);
     triangles.lod_count = 2;

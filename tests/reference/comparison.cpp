@@ -26,7 +26,7 @@ glm::vec3 background_light(const Background& background) {
 Mask coverage_of(const Frame& frame) {
     Mask mask(frame.width, frame.height);
     std::transform(frame.coverage.begin(), frame.coverage.end(), mask.pixels.begin(),
-                   [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0); });
+                   [](std::uint8_t c) { return static_cast<std::uint8_t>(c >= 128); });
     return mask;
 }
 

@@ -35,8 +35,9 @@ Shader lighting_twin(const Lighting& lighting, const IndexedMesh& mesh, const Ca
     const glm::dvec3 offset(mesh.source_offset.x(), mesh.source_offset.y(), mesh.source_offset.z());
     const double scale = mesh.source_scale;
 
-    return [=, ambient = lighting.ambient, specular = lighting.specular,
-            shininess = lighting.shininess](const SurfacePoint& point) {
+    return [=, ambient = lighting.ambient, specular = lighting.specular, shininess = lighting.shininess,
+            phong = lighting.highlight == HighlightModel::kPhong, rim = lighting.rim,
+            rim_exponent = lighting.rim_exponent](const SurfacePoint& point) {
         const glm::dvec3 position = glm::dvec3(point.position) * scale + offset;
         const glm::dvec3 to_eye(point.to_eye);
         glm::dvec3 normal(point.normal);
@@ -49,10 +50,13 @@ Shader lighting_twin(const Lighting& lighting, const IndexedMesh& mesh, const Ca
             const double distance = light.point ? glm::length(light.position - position) / light.range : 0;
             const glm::dvec3 strength = light.colour / (1 + distance * distance);
             diffuse += strength * cosine;
-            const glm::dvec3 half = glm::normalize(to_light + to_eye);
-            if (specular > 0) highlight += strength * std::pow(std::max(glm::dot(normal, half), 0.0), shininess);
+            const double lobe = phong ? glm::dot(2 * cosine * normal - to_light, to_eye)
+                                      : glm::dot(normal, glm::normalize(to_light + to_eye));
+            if (specular > 0) highlight += strength * std::pow(std::max(lobe, 0.0), shininess);
         }
-        return glm::vec3(glm::dvec3(point.colour) * diffuse + specular * highlight);
+        const double grazing = 1 - std::clamp(glm::dot(normal, to_eye), 0.0, 1.0);
+        return glm::vec3(glm::dvec3(point.colour) * diffuse + specular * highlight +
+                         rim * std::pow(grazing, rim_exponent));
     };
 }
 

@@ -1,6 +1,6 @@
-// The engine's lighting model in C++, written from its description and not from its shader: ambient + Lambert, and
-// Blinn-Phong where asked for. shaders/glsl/include/lighting.glsl is the other one; test_lighting_twin.cpp holds the
-// two together through rendered frames.
+// The engine's lighting model in C++, written from its description and not from its shader: ambient + Lambert,
+// highlights and a rim where asked for. shaders/glsl/include/lighting.glsl is the other one; test_lighting_twin.cpp
+// holds the two together through rendered frames.
 #pragma once
 
 #include "engine/scene/scene.h"

@@ -14,28 +14,6 @@ void require_same_size(const Raster<A>& a, const Raster<B>& b) {
     if (a.width != b.width || a.height != b.height) throw std::invalid_argument("images of different sizes");
 }
 
-/// Whether any pixel within `radius` of (x, y), inside the image, holds `value`.
-bool any_within(const Mask& mask, std::uint32_t x, std::uint32_t y, double radius, std::uint8_t value) {
-    const auto reach = static_cast<std::int64_t>(radius);
-    for (std::int64_t dy = -reach; dy <= reach; ++dy)
-        for (std::int64_t dx = -reach; dx <= reach; ++dx) {
-            if (static_cast<double>(dx * dx + dy * dy) > radius * radius) continue;
-            const std::int64_t nx = x + dx, ny = y + dy;
-            if (nx < 0 || ny < 0 || nx >= mask.width || ny >= mask.height) continue;
-            if (mask.at(static_cast<std::uint32_t>(nx), static_cast<std::uint32_t>(ny)) == value) return true;
-        }
-    return false;
-}
-
-template <typename Rule>
-Mask map_pixels(const Mask& mask, const Rule& rule) {
-    Mask result(mask.width, mask.height);
-    for (std::uint32_t y = 0; y < mask.height; ++y)
-        for (std::uint32_t x = 0; x < mask.width; ++x)
-            result.at(x, y) = rule(x, y) ? 1 : 0;
-    return result;
-}
-
 struct DepthRange {
     float nearest = kNothing, farthest = -kNothing;
 };
@@ -78,50 +56,6 @@ Mask covered(const DepthImage& depth) {
     std::transform(depth.pixels.begin(), depth.pixels.end(), mask.pixels.begin(),
                    [](float d) { return d == kNothing ? std::uint8_t{0} : std::uint8_t{1}; });
     return mask;
-}
-
-Mask eroded(const Mask& mask, double radius) {
-    return map_pixels(mask, [&](std::uint32_t x, std::uint32_t y) { return !any_within(mask, x, y, radius, 0); });
-}
-
-Mask dilated(const Mask& mask, double radius) {
-    return map_pixels(mask, [&](std::uint32_t x, std::uint32_t y) { return any_within(mask, x, y, radius, 1); });
-}
-
-double psnr(const ColourImage& image, const ColourImage& reference, const Mask* where) {
-    require_same_size(image, reference);
-    if (where) require_same_size(image, *where);
-    std::uint64_t squares = 0, pixels = 0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        if (where && !where->pixels[i]) continue;
-        const Rgb8 a = image.pixels[i], b = reference.pixels[i];
-        const int dr = a.r - b.r, dg = a.g - b.g, db = a.b - b.b;
-        squares += static_cast<std::uint64_t>(dr * dr + dg * dg + db * db);
-        ++pixels;
-    }
-    if (pixels == 0) return std::nan("");
-    return 10 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(pixels) / static_cast<double>(squares));
-}
-
-ColourImage difference(const ColourImage& image, const ColourImage& reference, int gain) {
-    require_same_size(image, reference);
-    ColourImage result(image.width, image.height);
-    const auto channel = [&](int a, int b) { return static_cast<std::uint8_t>(std::min(255, gain * std::abs(a - b))); };
-    std::transform(image.pixels.begin(), image.pixels.end(), reference.pixels.begin(), result.pixels.begin(),
-                   [&](Rgb8 a, Rgb8 b) {
-                       return Rgb8{channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
-                   });
-    return result;
-}
-
-double silhouette_iou(const Mask& a, const Mask& b) {
-    require_same_size(a, b);
-    std::uint64_t both = 0, either = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        both += static_cast<std::uint64_t>(a.pixels[i] & b.pixels[i]);
-        either += static_cast<std::uint64_t>(a.pixels[i] | b.pixels[i]);
-    }
-    return either ? static_cast<double>(both) / static_cast<double>(either) : 1.0;
 }
 
 SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference, const Tolerance& tolerance,

@@ -1,6 +1,7 @@
-// Measures that compare a frame with the reference. "Within r pixels" is Euclidean between pixel centres throughout.
+// Holds the surface that a frame shows against the reference; how the colours differ is engine/metrics'.
 #pragma once
 
+#include "engine/metrics/image_metrics.h"
 #include "tests/reference/images.h"
 
 #include <cstdint>
@@ -8,23 +9,14 @@
 
 namespace splice::reference {
 
+using metrics::any_within;
+using metrics::difference;
+using metrics::dilated;
+using metrics::eroded;
+using metrics::psnr;
+using metrics::silhouette_iou;
+
 Mask covered(const DepthImage& depth);
-
-/// Pixels whose every neighbour within `radius` is set; outside the image counts as set, so that a surface that runs
-/// out of the frame is not "near its border" there.
-Mask eroded(const Mask& mask, double radius);
-/// Pixels with a set neighbour within `radius`.
-Mask dilated(const Mask& mask, double radius);
-
-/// Peak signal-to-noise ratio in dB over the three channels of 8-bit sRGB; infinity for equal images. With `where`,
-/// over its set pixels only; NaN when there is none. Throws std::invalid_argument when sizes differ.
-double psnr(const ColourImage& image, const ColourImage& reference, const Mask* where = nullptr);
-
-/// Brightness = |image - reference| times `gain`, per channel.
-ColourImage difference(const ColourImage& image, const ColourImage& reference, int gain = 4);
-
-/// Intersection over union of two coverages; 1 when both are empty.
-double silhouette_iou(const Mask& a, const Mask& b);
 
 /// What the check of a frame against the reference found: counts of pixels that break a rule.
 struct SurfaceReport {

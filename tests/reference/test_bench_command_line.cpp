@@ -42,7 +42,7 @@ bool one_line(const std::string& text) {
 TEST_CASE("splice-bench --help names its commands and options") {
     const Outcome top = bench("--help");
     CHECK(top.exit_code == 0);
-    for (const char* word : {"bake", "capture", "holes", "graph"})
+    for (const char* word : {"bake", "capture", "holes", "quality", "graph"})
         CHECK(top.out.find(word) != std::string::npos);
     const Outcome holes = bench("holes --help");
     CHECK(holes.exit_code == 0);
@@ -56,12 +56,32 @@ TEST_CASE("splice-bench --help names its commands and options") {
 }
 
 TEST_CASE("splice-bench answers a wrong command line with one line and exit code 2") {
-    for (const char* arguments :
-         {"", "no-such-command", "holes --directions 27", "holes --directions x", "capture --size 0x5",
-          "capture --size 12", "bake --runs 0", "bake no-such-file.obj", "holes --representation points",
-          "capture --triangle-share 2", "graph --sizes 3", "graph --sizes 64,x", "graph --repeat 0", "graph --seed -",
-          "graph --no-device --families tree", "graph --no-device --families frame", "graph --device nonsense",
-          "graph extra"}) {
+    for (const char* arguments : {"",
+                                  "no-such-command",
+                                  "holes --directions 27",
+                                  "holes --directions x",
+                                  "capture --size 0x5",
+                                  "capture --size 12",
+                                  "bake --runs 0",
+                                  "bake no-such-file.obj",
+                                  "holes --representation points",
+                                  "capture --triangle-share 2",
+                                  "graph --sizes 3",
+                                  "graph --sizes 64,x",
+                                  "graph --repeat 0",
+                                  "graph --seed -",
+                                  "graph --no-device --families tree",
+                                  "graph --no-device --families frame",
+                                  "graph --device nonsense",
+                                  "graph extra",
+                                  "quality no-such-mesh.obj",
+                                  "quality bumpy-sphere x",
+                                  "quality bumpy-sphere 0",
+                                  "quality --backend beige",
+                                  "quality --shading cel",
+                                  "quality --antialias 0",
+                                  "capture --antialias 9",
+                                  "quality --depth 0"}) {
         INFO(arguments);
         const Outcome outcome = bench(arguments);
         CHECK(outcome.exit_code == 2);
@@ -98,6 +118,61 @@ TEST_CASE("splice-bench measures a bake and writes what it printed as JSON") {
     REQUIRE(report.size() == 1);
     CHECK(report[0]["runs"].size() == 2);
     CHECK(report[0]["runs"][0]["output"]["triangles"] == 2);
+}
+
+TEST_CASE("splice-bench quality measures meshes and scenes, and leaves pictures") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "two.json") << R"({"models": [
+        {"shape": {"kind": "ico-sphere", "frequency": 8}, "transform": {"scale": 0.5}},
+        {"shape": {"kind": "checkerboard"}, "transform": {"translation": [0.2, 0, -1]}}],
+        "camera": {"azimuth": 10, "elevation": 5}, "background": "#203040"})";
+    const Outcome outcome =
+        bench("quality --size 96x64 --json '" + (folder / "report.json").string() + "' --pictures '" +
+              (folder / "pictures").string() + "' '" + (folder / "two.json").string() + "'");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto report = nlohmann::json::parse(contents(folder / "report.json"));
+    REQUIRE(report["pictures"].size() == 1);
+    const auto& picture = report["pictures"][0];
+    CHECK(picture["name"] == "two");
+    // The frame shows what rays see: both models, in place, textured.
+    CHECK(picture["inside_db"].get<double>() > 20);
+    CHECK(picture["frame_db"].get<double>() > 20);
+    CHECK(picture["iou"].get<double>() > 0.97);
+    CHECK(picture["holes"] == 0);
+    for (const char* name : {"two.png", "two-reference.png", "two-error.png"})
+        CHECK(std::filesystem::exists(folder / "pictures" / name));
+}
+
+TEST_CASE("a million disks of the bumpy sphere are as true as they have to be, with one sample a pixel and with more") {
+    const test::TemporaryFolder folder;
+    const Outcome outcome =
+        bench("quality bumpy-sphere 1000000 --antialias 1,3 --json '" + (folder / "report.json").string() + "'");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto pictures = nlohmann::json::parse(contents(folder / "report.json"))["pictures"];
+    REQUIRE(pictures.size() == 2);
+    for (const auto& picture : pictures) {
+        CAPTURE(picture["antialias"].get<int>());
+        CHECK(picture["inside_db"].get<double>() >= 57.1);
+        CHECK(picture["frame_db"].get<double>() >= 38.5);
+        CHECK(picture["iou"].get<double>() >= 0.999);
+        CHECK(picture["holes"] == 0);
+    }
+    CHECK(pictures[1]["frame_db"].get<double>() >= 50);
+}
+
+TEST_CASE("splice-bench quality cannot know what a baked model was made from") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "a.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n";
+    const std::string model = (folder / "a.splice").string();
+    REQUIRE(std::system(("'" + test::program("splice-bake").string() + "' '" + (folder / "a.off").string() + "' -o '" +
+                         model + "' >/dev/null 2>&1")
+                            .c_str()) == 0);
+    const Outcome outcome = bench("quality '" + model + "'");
+    CHECK(outcome.exit_code == 1);
+    CHECK(one_line(outcome.err));
+    CHECK(outcome.err.find("expected a mesh") != std::string::npos);
 }
 
 TEST_CASE("splice-bench reports a mesh that cannot be baked as a failure") {

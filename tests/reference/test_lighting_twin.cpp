@@ -84,6 +84,17 @@ TEST_CASE("every kind of light and highlights: shader and twin agree") {
     CHECK(worst_difference(mesh, every_kind_of_light(), {-0.3, 0.5, 0.8}, true) <= 3);
 }
 
+TEST_CASE("mirrored highlights and a rim: shader and twin agree") {
+    const IndexedMesh mesh = repaired(shapes::bumpy_sphere(20000));
+    Lighting lighting = every_kind_of_light();
+    lighting.highlight = HighlightModel::kPhong;
+    lighting.shininess = 8;
+    lighting.rim = 0.4;
+    lighting.rim_exponent = 2;
+    CHECK(worst_difference(mesh, lighting, {-0.3, 0.5, 0.8}, false) <= 3);
+    CHECK(worst_difference(mesh, lighting, {-0.3, 0.5, 0.8}, true) <= 3);
+}
+
 TEST_CASE("an open surface is lit on the side that is looked at") {
     IndexedMesh sheet = repaired(shapes::checkerboard(1, 4));
     REQUIRE_FALSE(sheet.closed);

@@ -42,6 +42,18 @@ TEST_CASE("psnr over a mask ignores everything outside it") {
     CHECK(std::isnan(psnr(a, b, &none)));
 }
 
+TEST_CASE("differences are counted, and the largest is found") {
+    ColourImage a(4, 4, {10, 20, 30}), b = a;
+    CHECK(splice::metrics::count_differences(a, b).pixels == 0);
+    b.at(1, 2) = {10, 25, 30};
+    b.at(3, 3) = {9, 20, 37};
+    const auto found = splice::metrics::count_differences(a, b);
+    CHECK(found.pixels == 2);
+    CHECK(found.largest == 7);
+    CHECK(found.x == 3);
+    CHECK(found.y == 3);
+}
+
 TEST_CASE("erosion and dilation are Euclidean") {
     Mask dot(9, 9);
     dot.at(4, 4) = 1;

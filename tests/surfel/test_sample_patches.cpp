@@ -25,7 +25,7 @@ namespace {
 bool same_surfels(const SurfelSet& a, const SurfelSet& b) {
     const auto same = [](const SurfelSample& x, const SurfelSample& y) {
         return x.position == y.position && x.normal == y.normal && x.radius == y.radius && x.epsilon == y.epsilon &&
-               x.colour == y.colour && x.shading_bend == y.shading_bend;
+               x.colour == y.colour && x.shading_bend == y.shading_bend && x.clip == y.clip;
     };
     return a.patch_begin == b.patch_begin &&
            std::equal(a.surfels.begin(), a.surfels.end(), b.surfels.begin(), b.surfels.end(), same) &&

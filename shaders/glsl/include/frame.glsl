@@ -32,6 +32,11 @@ layout(set = 0, binding = 0, std140) uniform FrameUniforms {
     uint light_count;
     float specular;
     float shininess;
+    float rim;
+    float rim_exponent;
+    vec4 background;       // linear; alpha 0: transparent
+    uint phong;            // 0 or 1: highlights by Blinn's half vector or Phong's mirrored light
+    uint samples_per_side; // of a pixel of the picture; all else counts samples as pixels
 } frame;
 
 struct LightRecord {
@@ -64,6 +69,12 @@ vec3 to_view_space(vec3 position) {
 vec3 normal_to_view_space(vec3 normal) {
     return normalize(vec3(dot(instance.model_to_view[0].xyz, normal), dot(instance.model_to_view[1].xyz, normal),
                           dot(instance.model_to_view[2].xyz, normal)));
+}
+
+// The point of view space that shows at a window position.
+vec3 from_window(vec2 window, float depth) {
+    const vec2 q = (window - frame.viewport * 0.5) / frame.pixel_scale * (ORTHOGRAPHIC ? 1 : depth);
+    return vec3(q.x, -q.y, -depth);
 }
 
 // From a point of view space towards the eye, not normalised.

@@ -1,4 +1,5 @@
-// One light model for triangles (per pixel) and surfels (per surfel): ambient, Lambert, Blinn-Phong where asked for.
+// One light model for triangles (per pixel) and surfels (per surfel): ambient, Lambert; highlights and a rim where asked
+// for.
 // Needs frame.glsl.
 #ifndef SPLICE_LIGHTING_GLSL
 #define SPLICE_LIGHTING_GLSL
@@ -17,9 +18,18 @@ Light light_at(LightRecord light, vec3 normal, vec3 position) {
     vec3 highlight = vec3(0);
     if (frame.specular > 0) {
         const vec3 to_eye = normalize(towards_eye(position));
-        highlight = strength * pow(max(dot(normal, normalize(to_light + to_eye)), 0), frame.shininess);
+        const float lobe = frame.phong != 0 ? dot(reflect(-to_light, normal), to_eye)
+                                            : dot(normal, normalize(to_light + to_eye));
+        highlight = strength * pow(max(lobe, 0), frame.shininess);
     }
     return Light(strength * cosine, highlight);
+}
+
+// What a surface seen at a grazing angle adds, whatever the lights.
+float rim_light(vec3 normal, vec3 position) {
+    if (frame.rim == 0) return 0;
+    const float facing = clamp(dot(normal, normalize(towards_eye(position))), 0, 1);
+    return frame.rim * pow(1 - facing, frame.rim_exponent);
 }
 
 // Linear colours, view space.
@@ -31,7 +41,7 @@ vec3 shade(vec3 albedo, vec3 normal, vec3 position) {
         diffuse += light.diffuse;
         highlight += light.highlight;
     }
-    return albedo * diffuse + frame.specular * highlight;
+    return albedo * diffuse + frame.specular * highlight + rim_light(normal, position);
 }
 
 // Two-sided surfaces show the side that is looked at. What is seen from behind before the horizon is lit as what it

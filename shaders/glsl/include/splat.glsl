@@ -25,6 +25,7 @@ struct Splat {
     float anchor_depth; // t_P
     vec2 plane_offset;  // a
     vec3 skew;          // how (u, v) and t change along the ray, a radius along the normal; see skew_at
+    vec4 clip;          // the line that cuts the disk; see clip_line
     vec2 swell;         // how far the solid reaches above and below the plane, in radii
     float rise;         // the disk's depths are within this of t_P
     float epsilon;      // by how much the visibility pass moves depth away, along the ray, world units
@@ -85,9 +86,20 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
     return vec2(qb - root, qb + root) / qa;
 }
 
+const vec3 NO_CLIP = vec3(0, 0, 1);
+
+// The disk is kept where clip.xy . (u, v) <= clip.z; times e, that is l.d + l0 <= 0. Returns l, l0 and what the change of
+// that a radius along the normal takes.
+vec4 clip_line(vec3 clip, Splat splat) {
+    const vec2 l = vec2(dot(clip.xy, splat.plane_map.xy), dot(clip.xy, splat.plane_map.zw));
+    const float l0 = dot(clip.xy, splat.plane_offset) - clip.z;
+    const float skewed = dot(clip.xy, splat.skew.xy);
+    return ORTHOGRAPHIC ? vec4(l, l0, skewed) : vec4(l + l0 * splat.g, l0, clip.z + skewed);
+}
+
 // `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing
 // of it can be seen.
-bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swell, float epsilon,
+bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swell, vec3 clip, float epsilon,
                 out Splat splat) {
     const float depth = -centre.z;
     const vec2 slope = vec2(-s.z, -t.z);  // change of depth along the tangents
@@ -119,6 +131,7 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swe
     splat.plane_map = vec4(dot(s, along_x), dot(t, along_x), dot(s, along_y), dot(t, along_y));
     const vec3 off_axis = ORTHOGRAPHIC ? ray / facing : centre / radius;
     splat.skew = vec3(dot(s, off_axis), dot(t, off_axis), radius / facing);
+    splat.clip = clip_line(clip, splat);
     splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
 
     if (crosses_near) {
@@ -173,6 +186,7 @@ float flagged(float value, bool flag) { return flag ? -max(value, 1e-30) : value
 struct SplatHit {
     bool on_disk;      // the ray meets the disk, or the pixel holds the centre of a disk between pixel centres
     bool beside_disk;  // it does not, but meets the solid
+    bool cut_off;      // it meets the plane where the line cut the disk off, more than half a pixel beyond
     float depth;       // of the plane there, or of that centre, or of where the ray is nearest the solid's axis
     float distance2;   // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
     vec2 uv;           // where the ray meets the plane, in radii
@@ -186,7 +200,7 @@ vec2 skew_at(vec3 skew, vec2 uv, float e, float anchor_depth) {
 
 // A speck that its own pixel's ray misses shows there all the same, else what is behind would bleed through.
 SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset, vec3 skew, vec2 swell,
-                  bool sub_pixel) {
+                  vec4 clip, bool sub_pixel) {
     const vec2 d = pixel - anchor;
     const float gd = dot(g, d);
     const float e = ORTHOGRAPHIC ? 1 : 1 + gd;
@@ -195,21 +209,31 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_
     SplatHit hit;
     hit.depth = ORTHOGRAPHIC ? anchor_depth - gd : (e > 0 ? anchor_depth / e : NOWHERE);
     hit.uv = e > 0 ? uv / e : vec2(0);
-    hit.on_disk = e > 0 && distance2 <= e * e && hit.depth >= frame.near_plane;
+    // Times |e|; beyond the plane's horizon e is below 0.
+    const float side = e < 0 ? -1 : 1;
+    const float past_clip = side * (dot(clip.xy, d) + clip.z);
+    hit.on_disk = e > 0 && distance2 <= e * e && past_clip <= 0 && hit.depth >= frame.near_plane;
     hit.distance2 = hit.on_disk ? distance2 / (e * e) : NOWHERE;
     if (!hit.on_disk && sub_pixel && floor(pixel) == floor(anchor)) {
         hit.on_disk = true;
         hit.depth = anchor_depth;
         hit.uv = vec2(0);
     }
+    hit.cut_off = past_clip > 0 && past_clip * past_clip > 0.25 * dot(clip.xy, clip.xy);
     hit.beside_disk = false;
     if (!hit.on_disk) {
         const vec2 change = skew_at(skew, uv, e, anchor_depth);
         const float plane_depth = ORTHOGRAPHIC ? anchor_depth - gd : anchor_depth;  // times e
         // The part of the solid in front of the near plane.
         const float near_height = (frame.near_plane * e - plane_depth) / skew.z;
-        const float low = e * skew.z > 0 ? max(-swell.y, near_height) : -swell.y;
-        const float high = e * skew.z > 0 ? swell.x : min(swell.x, near_height);
+        float low = e * skew.z > 0 ? max(-swell.y, near_height) : -swell.y;
+        float high = e * skew.z > 0 ? swell.x : min(swell.x, near_height);
+        // And on the side of the line that is kept.
+        const float clip_change = ORTHOGRAPHIC ? clip.w : (past_clip + clip.w * abs(e)) * (skew.z / anchor_depth);
+        const float clip_height = -past_clip / clip_change;
+        if (clip_change > 0) high = min(high, clip_height);
+        if (clip_change < 0) low = max(low, clip_height);
+        if (clip_change == 0 && past_clip > 0) high = low - 1;
         const float height = clamp(-dot(uv, change) / max(dot(change, change), 1e-30), low, high);
         const vec2 nearest = uv + height * change;
         hit.beside_disk = low <= high && dot(nearest, nearest) <= e * e;

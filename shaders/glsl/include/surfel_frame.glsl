@@ -13,6 +13,7 @@ struct SurfelRecord {
     vec4 bend_1_4;
     uint patch_number;
     uint extent;  // preprocess/model_format/surfel_extent.h
+    uint clip;    // preprocess/model_format/surfel_clip.h
 };
 
 // The same surfels whatever else is drawn with them.
@@ -35,6 +36,23 @@ struct SurfelFrame {
 const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
 const vec3 EXTENT_ONES = vec3(31, 31, 24);
 
+// Above, below, epsilon, in radii.
+vec3 decode_extent(uint bits) {
+    const uvec3 steps = uvec3(bits & 31, bits >> 5 & 31, bits >> 10);
+    return mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
+}
+
+// kClipDirections, kClipSteps
+const float CLIP_DIRECTIONS = 64;
+const float CLIP_STEPS = 1023;
+
+vec3 decode_clip(uint bits) {
+    const uint cut = bits >> 6;
+    if (cut == 0) return NO_CLIP;
+    const float turn = 6.283185307 / CLIP_DIRECTIONS * float(bits & 63);
+    return vec3(cos(turn), sin(turn), 1 - float(cut) / CLIP_STEPS);
+}
+
 // The splat of a surfel; false if it is not to be drawn.
 bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) {
     const vec3 centre = surfel.centre = to_view_space(record.position);
@@ -52,9 +70,9 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
         radius *= frame.sample_radius;
     }
     surfel.radius = radius;
-    const uvec3 steps = uvec3(record.extent & 31, record.extent >> 5 & 31, record.extent >> 10);
-    const vec3 shares = mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
+    const vec3 shares = decode_extent(record.extent);
     return make_splat(centre, normal, surfel.s, surfel.t, radius, VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      VIEW == VIEW_SAMPLES ? NO_CLIP : decode_clip(record.clip),
                       shares.z * baked_radius * instance.epsilon_scale, splat);
 }
 
@@ -72,7 +90,26 @@ struct SurfelColour {
 const int LIT_POINTS = 5;
 const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0, 1), vec2(0, -1));
 
-// `side`: 1, or -1 where a two-sided surface is seen from behind. `uv`: on the disk, in radii.
+// 1, or -1 where a two-sided surface is seen from behind.
+float side_of(SurfelFrame surfel) { return dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1; }
+
+vec3 surfel_albedo(SurfelRecord record) { return view_albedo(decode_srgb(record.colour), record.patch_number, true); }
+
+// The shading normal, to first order: at the centre, where it is unit, and how it changes along both tangents, a radius.
+struct SurfelNormals {
+    vec3 centre, along_u, along_v;
+};
+
+SurfelNormals surfel_normals(SurfelRecord record, SurfelFrame surfel) {
+    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
+    const vec3 centre = surfel.normal + lean.x * surfel.s + lean.y * surfel.t;
+    const float scale = side_of(surfel) * inversesqrt(dot(centre, centre));
+    return SurfelNormals(scale * centre, scale * (turn.x * surfel.s + turn.y * surfel.t),
+                         scale * (turn.y * surfel.s + turn.z * surfel.t));
+}
+
+// `side`: side_of. `uv`: on the disk, in radii.
 vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
     const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
     const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
@@ -82,7 +119,7 @@ vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv
 
 // All points under one light before the next light: reading a light costs more than using it.
 SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
-    const float side = dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1;
+    const float side = side_of(surfel);
     vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
         normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);
@@ -100,9 +137,11 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
             }
         }
     }
-    const vec3 albedo = view_albedo(decode_srgb(record.colour), record.patch_number, true);
+    const vec3 albedo = surfel_albedo(record);
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
-        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p]) : albedo * diffuse[p] + frame.specular * highlights[p];
+        lit[p] = VIEW == VIEW_NORMALS ? normal_colour(normals[p])
+                                      : albedo * diffuse[p] + frame.specular * highlights[p] +
+                                            rim_light(normals[p], positions[p]);
     }
     SurfelColour colour;
     colour.centre = lit[0];

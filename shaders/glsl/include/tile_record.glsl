@@ -15,7 +15,8 @@ struct TileRecord {
     bool speck;
     vec2 skew;
     float climb;        // perspective: change of h, orthographic: of z, a radius along the normal
-    vec2 swell;         // radii; as halves
+    vec2 swell;         // radii; as the steps of surfel_extent.h
+    vec3 clip;          // decode_clip; as in the model file
     float rise;         // the disk's depths as a share of the anchor's; orthographic: in depth buffer values; half
     vec4 conic_weight;
     vec3 colour, colour_u, colour_v;  // halves
@@ -23,7 +24,7 @@ struct TileRecord {
 
 float depth_range() { return frame.far_plane - frame.near_plane; }
 
-TileSplat pack_splat(Splat splat, SurfelColour colour) {
+TileSplat pack_splat(SurfelRecord surfel, Splat splat, SurfelColour colour) {
     const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
     const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
     const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
@@ -34,7 +35,8 @@ TileSplat pack_splat(Splat splat, SurfelColour colour) {
     record.words[1] = floatBitsToUint(splat.plane_map);
     record.words[2] = floatBitsToUint(
         vec4(encode_depth(splat.anchor_depth), flagged(push, is_sub_pixel(splat)), splat.skew.xy));
-    record.words[3] = uvec4(packHalf2x16(splat.swell), packHalf2x16(vec2(colour.along_v.b, min(rise, 6e4))),
+    const uint solid = VIEW == VIEW_SAMPLES ? 0 : surfel.extent & 1023 | surfel.clip << 16;
+    record.words[3] = uvec4(solid, packHalf2x16(vec2(colour.along_v.b, min(rise, 6e4))),
                             packSnorm2x16(splat.plane_offset), floatBitsToUint(climb));
     record.words[4] = floatBitsToUint(vec4(splat.conic, splat.weight));
     record.words[5] = uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
@@ -56,7 +58,8 @@ TileRecord unpack_splat(TileSplat packed) {
     record.speck = depths.y < 0;
     record.skew = depths.zw;
     record.climb = uintBitsToFloat(packed.words[3].w);
-    record.swell = unpackHalf2x16(packed.words[3].x);
+    record.swell = decode_extent(packed.words[3].x & 1023).xy;
+    record.clip = decode_clip(packed.words[3].x >> 16);
     record.rise = blue_rise.y;
     record.conic_weight = uintBitsToFloat(packed.words[4]);
     record.colour = vec3(unpackHalf2x16(packed.words[5].x), blue_red.x);

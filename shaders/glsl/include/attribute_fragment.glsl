@@ -1,0 +1,33 @@
+// A fragment of the attribute pass: how much its splat weighs there, and where on the disk that is. Whoever includes
+// this declares the inputs. Needs frame.glsl, splat.glsl.
+#ifndef SPLICE_ATTRIBUTE_FRAGMENT_GLSL
+#define SPLICE_ATTRIBUTE_FRAGMENT_GLSL
+
+struct AttributeFragment {
+    bool reached;
+    float weight;
+    float depth;
+    vec2 uv;  // radii, on the disk: beyond it nothing is extrapolated
+};
+
+AttributeFragment attribute_fragment(vec2 pixel, vec4 anchor_g, vec4 plane_map, vec4 conic_weight, float anchor_depth,
+                                     vec3 rise_offset, vec3 skew, vec2 swell, vec4 clip) {
+    AttributeFragment fragment;
+    const SplatHit hit = cast_ray(pixel, anchor_g.xy, plane_map, anchor_g.zw, anchor_depth, rise_offset.yz, skew, swell,
+                                  clip, rise_offset.x < 0);
+    const vec2 d = pixel - anchor_g.xy;
+    const vec3 conic = conic_weight.xyz;
+    // x^T V^-1 x / 2. The affine ellipse holds the disk except where perspective bends it; there the disk itself takes
+    // over, so that no pixel that the visibility pass wrote is left without a weight.
+    float exponent = 0.5 * (conic.x * d.x * d.x + 2 * conic.y * d.x * d.y + conic.z * d.y * d.y);
+    fragment.reached = hit.on_disk || hit.beside_disk || (exponent < 1 && !hit.cut_off);
+    exponent = min(min(exponent, hit.distance2), 1);
+    fragment.weight = conic_weight.w * (hit.beside_disk ? BESIDE_WEIGHT : exp(-exponent));
+    // Tested against the pushed-back depth of the visibility pass. Beyond the disk its plane may be anywhere.
+    const float rise = abs(rise_offset.x);
+    fragment.depth = clamp(hit.depth, anchor_depth - rise, anchor_depth + rise);
+    fragment.uv = hit.uv * inversesqrt(max(dot(hit.uv, hit.uv), 1));
+    return fragment;
+}
+
+#endif

@@ -8,6 +8,7 @@
 //   Frame frame = renderer.render(scene_of(model), settings);
 #pragma once
 
+#include "engine/render_graph/executor/executor.h"
 #include "engine/render_graph/export/export.h"
 #include "engine/render_graph/export/frame_picture.h"
 #include "engine/scene/backend.h"
@@ -36,6 +37,7 @@ struct RendererOptions {
     std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
     bool validate = false;        // validation and synchronisation-validation layers
     std::uint64_t most_tile_groups = 0;  // groups of 64 surfels the tile backend works on at once; 0: all that fit
+    graph::ExecutorOptions graph = {};   // switches of the render graph, and what it measures of each pass
 };
 
 struct CaptureSettings {
@@ -61,6 +63,8 @@ struct CaptureSettings {
 struct PassTime {
     std::string name;
     double gpu_ms;
+    std::optional<gpu::PipelineCounts> counts =
+        {};  // with RendererOptions::graph.pipeline_statistics, where there are any
 };
 
 struct FrameStats {

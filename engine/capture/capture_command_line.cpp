@@ -1,5 +1,6 @@
 #include "engine/capture/capture_command_line.h"
 
+#include "engine/capture/graph_switches.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/error.h"
 
@@ -125,7 +126,7 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading;
+        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch;
     bool one_sided = false, two_sided = false;
 };
 
@@ -170,6 +171,7 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
             throw UsageError("--graph: expected a file that ends in .dot, .mmd or .json, got \"" + raw.graph + "\"");
         command.graph = raw.graph;
     }
+    if (!raw.graph_switch.empty()) apply_graph_switches(raw.graph_switch, command.renderer.graph);
     if (raw.one_sided && raw.two_sided) throw UsageError("--one-sided and --two-sided exclude each other");
     if (raw.one_sided) command.sides = Sides::kOneSided;
     if (raw.two_sided) command.sides = Sides::kTwoSided;
@@ -193,6 +195,8 @@ void check_combination(const CaptureCommand& command) {
     if (command.input.empty()) throw UsageError("INPUT is missing (see --help)");
     if (command.output.empty()) throw UsageError("-o OUT.png is missing (see --help)");
     check_picture_format(command.output);
+    if (command.renderer.graph.pipeline_statistics && !command.stats)
+        throw UsageError("--pass-statistics needs --stats, which they are written to");
     if (command.orthographic && command.fov_degrees) throw UsageError("--orthographic excludes --fov");
     if (command.eye.has_value() != command.target.has_value())
         throw UsageError("--eye and --target are given together or not at all");
@@ -264,9 +268,15 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
         ->option_text("FILE");
     app.add_option(
            "--graph", raw.graph,
-           "Write the frame's render graph, as declared and as compiled; the extension says how: Graphviz (.dot), "
-           "Mermaid (.mmd) or JSON (.json)")
+           "Write the frame's render graph as compiled: for Graphviz (.dot) or Mermaid (.mmd) passes in their render "
+           "passes and what they hand on; as JSON (.json) the declaration, resources, barriers and reasons, too")
         ->option_text("FILE");
+    app.add_option("--graph-switch", raw.graph_switch,
+                   "Switches of the render graph, which change costs and never the picture: " + graph_switch_help())
+        ->option_text("LIST");
+    app.add_flag("--pass-statistics", command.renderer.graph.pipeline_statistics,
+                 "With --stats: what each graphics pass drew (vertices, primitives, shader invocations), where the "
+                 "device counts");
     app.add_flag("--validate", command.renderer.validate,
                  "Run with the Vulkan validation layers; any message fails the run");
     app.add_flag("--quiet", command.quiet, "Print nothing but errors");

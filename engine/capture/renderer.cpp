@@ -21,7 +21,7 @@ struct Renderer::Implementation {
     explicit Implementation(const RendererOptions& options)
         : own(std::make_unique<OwnDevice>(options)),
           device(own->device),
-          executor(device),
+          executor(device, options.graph),
           passes(device, options.most_tile_groups) {}
     explicit Implementation(gpu::Device& borrowed) : device(borrowed), executor(device), passes(device) {}
 
@@ -138,7 +138,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     stats->frame_ms = elapsed.count();
     for (const graph::PassTiming& timing : executor.timings())
-        stats->passes.push_back({timing.name, timing.gpu_ms});
+        stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
     stats->backend = backend;
     stats->antialias = antialias;
     stats->shading = settings.shading;

@@ -6,6 +6,16 @@ namespace splice {
 
 namespace {
 
+nlohmann::ordered_json json_of(const PassTime& pass) {
+    nlohmann::ordered_json json{{"name", pass.name}, {"gpu_ms", pass.gpu_ms}};
+    if (!pass.counts) return json;
+    json["input_vertices"] = pass.counts->input_vertices;
+    json["vertex_invocations"] = pass.counts->vertex_invocations;
+    json["clipped_primitives"] = pass.counts->clipped_primitives;
+    json["fragment_invocations"] = pass.counts->fragment_invocations;
+    return json;
+}
+
 nlohmann::ordered_json json_of(const FrameStats& stats) {
     nlohmann::ordered_json json;
     json["device"] = stats.device;
@@ -15,7 +25,7 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
     json["frame_ms"] = stats.frame_ms;
     json["passes"] = nlohmann::ordered_json::array();
     for (const PassTime& pass : stats.passes)
-        json["passes"].push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}});
+        json["passes"].push_back(json_of(pass));
     json["surfels_drawn"] = stats.surfels_drawn;
     json["triangles_drawn"] = stats.triangles_drawn;
     json["covered_pixels"] = stats.covered_pixels;

@@ -260,7 +260,7 @@ void TilePasses::bind(const graph::PassContext& context, Stage stage, const Fram
                 return {gather_, "tile_gather", 0};
         }
     }();
-    gpu::ComputePipeline& pipeline = pipelines_[{frame_variant(settings), stage}];
+    gpu::ComputePipeline& pipeline = pipelines_[{frame_variant(settings), stage, composes(settings)}];
     if (!pipeline) {
         std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
         constants[0] = program.part;

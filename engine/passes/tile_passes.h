@@ -22,7 +22,8 @@ class TilePasses {
 
     /// Whether the backend can draw this frame: the device's abilities, and the view.
     bool can_draw(const FrameSettings& settings) const;
-    /// Whether add() makes the picture; if not, the normalise pass does. Pictures of numbers and samples it leaves alone.
+    /// Whether add() makes the picture; if not, the normalise pass does. Pictures of numbers and samples it leaves
+    /// alone.
     static bool composes(const FrameSettings& settings) {
         return !is_numeric(settings.view) && settings.antialias == 1;
     }
@@ -79,7 +80,7 @@ class TilePasses {
     gpu::UniqueSampler sampler_;
     gpu::DescriptorPool pool_;
     Sets sets_;
-    std::map<std::pair<FrameVariant, Stage>, gpu::ComputePipeline> pipelines_;
+    std::map<std::tuple<FrameVariant, Stage, bool>, gpu::ComputePipeline> pipelines_;  // bool: composes()
 };
 
 }  // namespace splice

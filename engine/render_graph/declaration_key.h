@@ -34,9 +34,11 @@ class SequenceDigest {
     uint64_t first_ = 0x6a09e667f3bcc908u, second_ = 0xbb67ae8584caa73bu;
 };
 
-/// What is declared in any order beside the rest has a sequence of its own.
+/// A sequence each, so that no record of one kind can stand for records of another: what is declared can be read back
+/// from the words that are added. A resource is followed by its import if it says that it has one; a pass says where
+/// its accesses begin.
 struct DeclarationKey {
-    SequenceDigest resources, passes, side_effects;
+    SequenceDigest resources, passes, accesses, side_effects;
     friend bool operator==(const DeclarationKey&, const DeclarationKey&) = default;
 };
 

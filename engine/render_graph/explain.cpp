@@ -43,6 +43,9 @@ std::string explain(const Graph& graph, const Unmerged& unmerged) {
             return text + "they read " + quote_resource(graph, unmerged.resource) + " in different layouts";
         case UnmergedReason::pass_between:
             return text + quote_pass(graph, unmerged.other) + " depends on a pass of the group and must run before it";
+        case UnmergedReason::gave_up:
+            return text + "whether " + quote_pass(graph, unmerged.other) +
+                   " must run between them was not found out in time";
         case UnmergedReason::switched_off:
             return text + "merging is switched off";
     }

@@ -1,6 +1,8 @@
 #include "engine/render_graph/graph.h"
 
 #include <cstring>
+#include <random>
+#include <type_traits>
 
 namespace splice::graph {
 namespace {
@@ -90,18 +92,20 @@ uint32_t Graph::add_resource(std::string_view name, ResourceDeclaration declarat
         declaration.imported = true;
         declaration.import = static_cast<uint32_t>(declaration_.imports.size());
         declaration_.imports.push_back(*import);
-        for (const ExternalUse& use : {import->before, import->after}) {
-            key_.resources.add(use.scope.stages);
-            key_.resources.add(use.scope.access);
-            key_.resources.add(static_cast<uint64_t>(use.layout));
-        }
-        key_.resources.add(import->wanted ? 1 : 0);
         state.has_contents =
             declaration.kind == ResourceKind::buffer || import->before.layout != VK_IMAGE_LAYOUT_UNDEFINED;
     }
     const auto index = static_cast<uint32_t>(declaration_.resources.size());
     declaration_.resources.push_back(declaration);
     key_.resources.add_bytes(declaration);
+    if (import) {
+        for (const ExternalUse& use : {import->before, import->after}) {
+            key_.resources.add(use.scope.stages);
+            key_.resources.add(use.scope.access);
+            key_.resources.add(static_cast<uint64_t>(use.layout));
+        }
+        key_.resources.add(import->wanted ? 1 : 0);
+    }
     resource_names_.emplace_back(name);
     initial_values_.emplace_back();
     states_.push_back(state);
@@ -120,32 +124,32 @@ uint32_t Graph::add_history(std::string_view name, ResourceDeclaration declarati
 }
 
 ImageHandle Graph::create_image(std::string_view name, const ImageDescription& description) {
-    return {add_resource(name, {.image = description}), 0};
+    return {add_resource(name, {.image = description}), 0, id_};
 }
 
 BufferHandle Graph::create_buffer(std::string_view name, const BufferDescription& description) {
-    return {add_resource(name, {.buffer = description, .kind = ResourceKind::buffer}), 0};
+    return {add_resource(name, {.buffer = description, .kind = ResourceKind::buffer}), 0, id_};
 }
 
 ImageHandle Graph::import_image(std::string_view name, const ImageDescription& description,
                                 const ImportOptions& options) {
-    return {add_resource(name, {.image = description}, &options), 0};
+    return {add_resource(name, {.image = description}, &options), 0, id_};
 }
 
 BufferHandle Graph::import_buffer(std::string_view name, const BufferDescription& description,
                                   const ImportOptions& options) {
-    return {add_resource(name, {.buffer = description, .kind = ResourceKind::buffer}, &options), 0};
+    return {add_resource(name, {.buffer = description, .kind = ResourceKind::buffer}, &options), 0, id_};
 }
 
 ImageHistory Graph::create_history_image(std::string_view name, const ImageDescription& description,
                                          const VkClearValue& initial) {
     const uint32_t previous = add_history(name, {.image = description}, initial);
-    return {{previous, 0}, {previous + 1, 0}};
+    return {{previous, 0, id_}, {previous + 1, 0, id_}};
 }
 
 BufferHistory Graph::create_history_buffer(std::string_view name, const BufferDescription& description) {
     const uint32_t previous = add_history(name, {.buffer = description, .kind = ResourceKind::buffer}, {});
-    return {{previous, 0}, {previous + 1, 0}};
+    return {{previous, 0, id_}, {previous + 1, 0, id_}};
 }
 
 Pass Graph::add_pass(std::string_view name, PassKind kind) {
@@ -153,13 +157,18 @@ Pass Graph::add_pass(std::string_view name, PassKind kind) {
     pass.kind = kind;
     pass.first_access = static_cast<uint32_t>(declaration_.accesses.size());
     declaration_.passes.push_back(pass);
-    key_.passes.add(static_cast<uint64_t>(kind));
+    key_.passes.add(uint64_t{pass.first_access} << 8 | static_cast<uint64_t>(kind));
     pass_names_.emplace_back(name);
     functions_.emplace_back();
-    return {this, static_cast<uint32_t>(declaration_.passes.size() - 1)};
+    return {this, id_, static_cast<uint32_t>(declaration_.passes.size() - 1)};
+}
+
+uint32_t Graph::random_id() {
+    return std::random_device{}();
 }
 
 void Graph::clear() {
+    ++id_;
     declaration_.passes.clear();
     declaration_.resources.clear();
     declaration_.accesses.clear();
@@ -177,23 +186,30 @@ void Graph::fail(uint32_t pass, uint32_t resource, const std::string& problem) c
     throw GraphError("pass '" + pass_names_[pass] + "', " + quote_resource(*this, resource) + ": " + problem);
 }
 
-PassDeclaration& Graph::open_pass(uint32_t pass) {
-    if (pass + 1 != declaration_.passes.size()) {
-        const std::string name = pass < pass_names_.size() ? pass_names_[pass] : "";
-        throw GraphError("pass '" + name + "': is complete since the next pass was added; declare all of it before");
+PassDeclaration& Graph::open_pass(const Pass& pass) {
+    if (pass.graph_id_ != id_) {
+        throw GraphError("pass " + std::to_string(pass.index_) +
+                         ": belongs to a declaration that was cleared; add it anew after clear()");
     }
-    return declaration_.passes[pass];
+    if (pass.index_ + 1 != declaration_.passes.size()) {
+        throw GraphError("pass '" + pass_names_[pass.index_] +
+                         "': is complete since the next pass was added; declare all of it before");
+    }
+    return declaration_.passes.back();
 }
 
-uint32_t Graph::add_access(uint32_t pass, ResourceKind resource_kind, uint32_t resource, uint32_t version,
-                           AccessKind kind, const Contents& contents, VkPipelineStageFlags stages) {
-    PassDeclaration& declared = open_pass(pass);
-    if (resource >= declaration_.resources.size() || declaration_.resources[resource].kind != resource_kind) {
-        throw GraphError("pass '" + pass_names_[pass] + "': uses a handle that no " +
-                         (resource_kind == ResourceKind::image ? "image" : "buffer") +
+template <typename Handle>
+Handle Graph::add_access(const Pass& open, const Handle& handle, AccessKind kind, const Contents& contents,
+                         VkPipelineStageFlags stages) {
+    constexpr bool image = std::is_same_v<Handle, ImageHandle>;
+    PassDeclaration& declared = open_pass(open);
+    const uint32_t pass = open.index_, resource = handle.resource;
+    if (handle.graph != id_ || resource >= declaration_.resources.size() ||
+        declaration_.resources[resource].kind != (image ? ResourceKind::image : ResourceKind::buffer)) {
+        throw GraphError("pass '" + pass_names_[pass] + "': uses a handle that no " + (image ? "image" : "buffer") +
                          " of this graph has; use one that this graph gave out since it was last cleared");
     }
-    Access access{resource, version, kind, is_write(kind) ? contents.kind : ContentsKind::keep, 0};
+    Access access{resource, handle.version, kind, is_write(kind) ? contents.kind : ContentsKind::keep, 0};
     if (traits_of(kind).shader) {
         const VkPipelineStageFlags own = declared.kind == PassKind::compute ? kComputeShader : kGraphicsShaders;
         access.stages = stages == 0 ? own : stages;
@@ -201,7 +217,7 @@ uint32_t Graph::add_access(uint32_t pass, ResourceKind resource_kind, uint32_t r
     check_access(pass, access);
     const auto index = static_cast<uint32_t>(declaration_.accesses.size());
     declaration_.accesses.push_back(access);
-    key_.passes.add_bytes(access);
+    key_.accesses.add_bytes(access);
     clear_values_.push_back(contents.value);
     ++declared.access_count;
     ResourceState& state = states_[resource];
@@ -211,7 +227,7 @@ uint32_t Graph::add_access(uint32_t pass, ResourceKind resource_kind, uint32_t r
         state.has_contents = true;
         state.last_writer = pass;
     }
-    return state.version;
+    return {resource, state.version, id_};
 }
 
 void Graph::check_access(uint32_t pass, const Access& access) const {
@@ -302,13 +318,11 @@ void Graph::check_feedback(uint32_t pass, const Access& access) const {
 }
 
 ImageHandle Pass::add(ImageHandle image, AccessKind kind, Contents contents, VkPipelineStageFlags stages) {
-    return {image.resource,
-            graph_->add_access(index_, ResourceKind::image, image.resource, image.version, kind, contents, stages)};
+    return graph_->add_access(*this, image, kind, contents, stages);
 }
 
 BufferHandle Pass::add(BufferHandle buffer, AccessKind kind, Contents contents, VkPipelineStageFlags stages) {
-    return {buffer.resource,
-            graph_->add_access(index_, ResourceKind::buffer, buffer.resource, buffer.version, kind, contents, stages)};
+    return graph_->add_access(*this, buffer, kind, contents, stages);
 }
 
 ImageHandle Pass::colour_attachment(ImageHandle image, Contents contents) {
@@ -372,13 +386,13 @@ BufferHandle Pass::transfer_write(BufferHandle buffer, Contents contents) {
 }
 
 void Pass::side_effect() {
-    PassDeclaration& pass = graph_->open_pass(index_);
+    PassDeclaration& pass = graph_->open_pass(*this);
     if (!pass.side_effect) graph_->key_.side_effects.add(index_);
     pass.side_effect = true;
 }
 
 void Pass::record(RecordFunction function) {
-    graph_->open_pass(index_);
+    graph_->open_pass(*this);
     graph_->functions_[index_] = std::move(function);
 }
 

@@ -64,6 +64,7 @@ struct PassContext;  // executor/pass_context.h
 struct ImageHandle {
     uint32_t resource = UINT32_MAX;
     uint32_t version = 0;
+    uint32_t graph = 0;  ///< Graph::id() of the declaration that it belongs to
     friend bool operator==(const ImageHandle&, const ImageHandle&) = default;
 };
 
@@ -71,6 +72,7 @@ struct ImageHandle {
 struct BufferHandle {
     uint32_t resource = UINT32_MAX;
     uint32_t version = 0;
+    uint32_t graph = 0;  ///< Graph::id() of the declaration that it belongs to
     friend bool operator==(const BufferHandle&, const BufferHandle&) = default;
 };
 
@@ -156,7 +158,8 @@ VkClearValue clear_depth_stencil(float depth, uint32_t stencil);
 
 using RecordFunction = std::function<void(const PassContext&)>;
 
-/// Declares the accesses of one pass. Valid until the next add_pass(); afterwards every call throws GraphError.
+/// Declares the accesses of one pass. Valid until the next add_pass() or clear(); afterwards every call throws
+/// GraphError.
 /// Colour attachments take locations 0, 1, ... and input attachments indices 0, 1, ... in order of declaration.
 class Pass {
   public:
@@ -195,11 +198,12 @@ class Pass {
 
   private:
     friend class Graph;
-    Pass(Graph* graph, uint32_t index) : graph_(graph), index_(index) {}
+    Pass(Graph* graph, uint32_t graph_id, uint32_t index) : graph_(graph), graph_id_(graph_id), index_(index) {}
     ImageHandle add(ImageHandle image, AccessKind kind, Contents contents, VkPipelineStageFlags stages);
     BufferHandle add(BufferHandle buffer, AccessKind kind, Contents contents, VkPipelineStageFlags stages);
 
     Graph* graph_;
+    uint32_t graph_id_;
     uint32_t index_;
 };
 
@@ -273,8 +277,14 @@ class Graph {
     BufferHistory create_history_buffer(std::string_view name, const BufferDescription& description);
     Pass add_pass(std::string_view name, PassKind kind);
 
-    /// Forgets everything, keeps the storage for the next frame's declaration.
+    /// Forgets everything, keeps the storage for the next frame's declaration. Handles and passes become invalid.
     void clear();
+    /// Tells this declaration from those of other graphs, and from those before clear(): handles and passes carry it.
+    /// Drawn at random, so that no state is shared; nothing else depends on it.
+    uint32_t id() const { return id_; }
+    /// The handle of the contents that the declaration so far leaves in a resource, which must be of that kind.
+    ImageHandle image(uint32_t resource) const { return {resource, states_[resource].version, id_}; }
+    BufferHandle buffer(uint32_t resource) const { return {resource, states_[resource].version, id_}; }
 
     const Declaration& declaration() const { return declaration_; }
     /// Of the declaration: equal keys, equal declarations.
@@ -292,6 +302,7 @@ class Graph {
 
   private:
     friend class Pass;
+    static uint32_t random_id();
     struct ResourceState {
         uint32_t version = 0;
         bool has_contents = false;
@@ -301,15 +312,17 @@ class Graph {
     uint32_t add_resource(std::string_view name, ResourceDeclaration declaration,
                           const ImportOptions* import = nullptr);
     uint32_t add_history(std::string_view name, ResourceDeclaration declaration, const VkClearValue& initial);
-    uint32_t add_access(uint32_t pass, ResourceKind resource_kind, uint32_t resource, uint32_t version, AccessKind kind,
-                        const Contents& contents, VkPipelineStageFlags stages);
-    PassDeclaration& open_pass(uint32_t pass);
+    template <typename Handle>
+    Handle add_access(const Pass& pass, const Handle& handle, AccessKind kind, const Contents& contents,
+                      VkPipelineStageFlags stages);
+    PassDeclaration& open_pass(const Pass& pass);
     void check_access(uint32_t pass, const Access& access) const;
     void check_contents(uint32_t pass, const Access& access) const;
     void check_format(uint32_t pass, const Access& access) const;
     void check_feedback(uint32_t pass, const Access& access) const;
     [[noreturn]] void fail(uint32_t pass, uint32_t resource, const std::string& problem) const;
 
+    uint32_t id_ = random_id();
     Declaration declaration_;
     DeclarationKey key_;
     std::vector<ResourceState> states_;

@@ -136,6 +136,7 @@ enum class UnmergedReason : uint8_t {
     clears_attachment,  ///< the later pass clears or discards `resource`, which the earlier one uses
     different_layouts,  ///< both only read `resource`, but in different layouts
     pass_between,       ///< `other` must run between them
+    gave_up,            ///< whether one must was not found out within the effort that keeps compilation linear
     switched_off,       ///< CompileOptions::merge
 };
 

@@ -158,6 +158,7 @@ void Device::create_device() {
     features_.fragment_stores_and_atomics = optional(core.fragmentStoresAndAtomics, on.fragmentStoresAndAtomics);
     features_.vertex_stores_and_atomics =
         optional(core.vertexPipelineStoresAndAtomics, on.vertexPipelineStoresAndAtomics);
+    features_.pipeline_statistics = optional(core.pipelineStatisticsQuery, on.pipelineStatisticsQuery);
     features_.shader_int64 = optional(core.shaderInt64, on.shaderInt64);
     features_.draw_indirect_count = optional(have.v12.drawIndirectCount, want.v12.drawIndirectCount);
     features_.buffer_int64_atomics = optional(have.v12.shaderBufferInt64Atomics, want.v12.shaderBufferInt64Atomics);

@@ -53,6 +53,7 @@ struct DeviceFeatures {
     bool buffer_int64_atomics = false;
     bool shader_draw_parameters = false;
     bool timestamps = false;  ///< on the queue in use
+    bool pipeline_statistics = false;
 };
 
 class Device {

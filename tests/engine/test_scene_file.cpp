@@ -129,7 +129,8 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
         {with(R"("render": {"sides": "both"})"),
          "scene.json: /render/sides: expected one of \"as-baked\", \"one-sided\", \"two-sided\", got \"both\""},
         {with("\"a/b~\": 1"),
-         "scene.json: /a~1b~0: unknown member, expected one of models, camera, lighting, background, render"},
+         "scene.json: /a~1b~0: unknown member, expected one of models, camera, lighting, background, render, "
+         "bookmarks"},
         {R"({"models": [{"file": ")" + big + R"("}], "background": ")" + big + "\"}",
          "scene.json: /background: expected a colour like \"#ff8000\", or \"transparent\", got \"" +
              std::string(59, 'x') + "..."},

@@ -139,6 +139,55 @@ TEST_CASE("the frame's render graph is written in the form that the file's exten
     CHECK(resource("picture")->at("format") == "R8G8B8A8Unorm");
 }
 
+TEST_CASE("switches of the render graph change its plan and not a byte of the picture") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const auto run_with = [&](const std::string& name, std::vector<std::string> switches) {
+        std::vector<std::string> arguments{"a.splice",  "-o",     name + ".png", "--size",  "64x64",
+                                           "--backend", "sprite", "--validate",  "--graph", name + ".json"};
+        arguments.insert(arguments.end(), switches.begin(), switches.end());
+        const Outcome outcome = capture(folder, arguments);
+        CHECK(outcome.err == "");
+        CHECK(outcome.exit_code == 0);
+        return nlohmann::json::parse(read_text(folder / (name + ".json")));
+    };
+    const auto reference = run_with("reference", {});
+    const std::string picture = read_text(folder / "reference.png");
+    CHECK(!picture.empty());
+    for (const std::string list :
+         {"no-cull", "no-merge", "no-alias", "one-barrier-per-access", "random-order=7",
+          "no-cull,no-merge,no-alias,one-barrier-per-access,random-order=18446744073709551615"}) {
+        CAPTURE(list);
+        const auto graph = run_with("switched", {"--graph-switch", list});
+        CHECK(read_text(folder / "switched.png") == picture);
+        const bool merges = list.find("no-merge") == std::string::npos;
+        CHECK((graph.at("plan").at("groups") == reference.at("plan").at("groups")) == merges);
+    }
+    for (const std::string wrong : {"no-culling", "no-cull,", "random-order=", "random-order=-1"}) {
+        const Outcome outcome = capture(folder, {"a.splice", "-o", "b.png", "--graph-switch", wrong});
+        CHECK(outcome.exit_code == 2);
+        CHECK_THAT(outcome.err, Catch::Contains("--graph-switch: expected some of no-cull, no-merge"));
+    }
+}
+
+TEST_CASE("what each pass drew is counted when asked for") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const Outcome outcome = capture(folder, {"a.splice", "-o", "a.png", "--size", "64x64", "--backend", "sprite",
+                                             "--validate", "--stats", "a.json", "--pass-statistics"});
+    CHECK(outcome.err == "");
+    const auto passes = nlohmann::json::parse(read_text(folder / "a.json")).at("passes");
+    REQUIRE(passes.size() == 5);
+    CHECK(passes[0].at("name") == "triangle");
+    if (passes[0].contains("vertex_invocations")) {  // where the device counts
+        CHECK(passes[0].at("input_vertices") == 6);
+        CHECK(passes[0].at("fragment_invocations").get<int>() > 100);
+        CHECK(passes[2].at("fragment_invocations").get<int>() > 100);
+        CHECK_FALSE(passes[4].contains("fragment_invocations"));  // a copy
+    }
+    CHECK(capture(folder, {"a.splice", "-o", "a.png", "--pass-statistics"}).exit_code == 2);
+}
+
 TEST_CASE("a mesh and a scene that names it make the same picture") {
     const TemporaryFolder folder;
     write_text(folder / "tetra.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");

@@ -37,6 +37,7 @@ class Declarer {
     explicit Declarer(Bytes& bytes) : bytes_(bytes) {}
 
     void run(graph::Graph& graph) {
+        graph_id_ = graph.id();
         constexpr std::uint32_t kMost = 48;  // of resources and of passes: the checker's time
         while (!bytes_.done()) {
             const std::uint32_t choice = bytes_.take(8);
@@ -133,7 +134,8 @@ class Declarer {
     template <typename Handle>
     Handle& some(std::vector<Handle>& handles) {
         const std::uint32_t at = bytes_.take(64);
-        spoiled<Handle>() = handles.empty() ? Handle{at, 0} : handles[at % handles.size()];
+        spoiled<Handle>() =
+            handles.empty() ? Handle{at, 0, bytes_.take(2) == 0 ? graph_id_ : 0} : handles[at % handles.size()];
         switch (handles.empty() ? 0 : bytes_.take(24)) {
             case 0:
                 return spoiled<Handle>();
@@ -235,6 +237,7 @@ class Declarer {
     }
 
     Bytes& bytes_;
+    uint32_t graph_id_ = 0;
     std::vector<graph::ImageHandle> images_;
     std::vector<graph::BufferHandle> buffers_;
     graph::ImageHandle spoiled_image_;
@@ -253,17 +256,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.alias = (switches & 4) == 0;
     options.batch_barriers = (switches & 8) == 0;
     if ((switches & 16) != 0) options.random_order = bytes.take(256);
-    std::vector<uint64_t> sizes;
-    options.memory = [&](uint32_t resource, const graph::PlannedResource&) {
-        return graph::MemoryRequirement{sizes[resource], 64, 1};
-    };
+    std::vector<graph::MemoryRequirement> memory;
+    options.memory = [&](uint32_t resource, const graph::PlannedResource&) { return memory[resource]; };
     graph::Graph graph;
     Declarer(bytes).run(graph);
     for (uint64_t resource = 0; resource < graph.declaration().resources.size(); ++resource)
-        sizes.push_back(100 + resource * resource * 37 % 1000);
+        memory.push_back({100 + resource * resource * 37 % 1000, 64, 1});
     Declarer::attempt("pass 'p", [&] {
         const graph::Plan plan = graph::compile(graph, options);
-        for (const std::string& problem : test::find_hazards(graph, plan, sizes))
+        for (const std::string& problem : test::find_hazards(graph, plan, memory))
             require(false, problem);
     });
     return 0;

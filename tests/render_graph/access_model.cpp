@@ -59,6 +59,61 @@ bool has_depth(VkFormat format) {
            format == VK_FORMAT_D24_UNORM_S8_UINT;
 }
 
+bool has_stencil(VkFormat format) {
+    return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
+}
+
+VkImageAspectFlags aspects_of(VkFormat format) {
+    if (!has_depth(format)) return VK_IMAGE_ASPECT_COLOR_BIT;
+    return VK_IMAGE_ASPECT_DEPTH_BIT | (has_stencil(format) ? VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT} : 0);
+}
+
+bool used_as_attachment(AccessKind kind) {
+    return kind == AccessKind::colour_attachment || kind == AccessKind::depth_stencil_attachment ||
+           kind == AccessKind::depth_stencil_read || kind == AccessKind::input_attachment;
+}
+
+VkImageUsageFlags image_usage_of(AccessKind kind, VkFormat format) {
+    // An image in the read-only layout of depth must have been created as an attachment (valid usage of barriers).
+    const VkImageUsageFlags read_only = has_depth(format) ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : 0;
+    switch (kind) {
+        case AccessKind::colour_attachment:
+            return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        case AccessKind::depth_stencil_attachment:
+        case AccessKind::depth_stencil_read:
+            return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+        case AccessKind::input_attachment:
+            return VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | read_only;
+        case AccessKind::sampled:
+            return VK_IMAGE_USAGE_SAMPLED_BIT | read_only;
+        case AccessKind::transfer_read:
+            return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        case AccessKind::transfer_write:
+            return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        default:
+            return VK_IMAGE_USAGE_STORAGE_BIT;
+    }
+}
+
+VkBufferUsageFlags buffer_usage_of(AccessKind kind) {
+    switch (kind) {
+        case AccessKind::uniform:
+            return VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+        case AccessKind::vertex:
+            return VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
+        case AccessKind::index:
+            return VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+        case AccessKind::indirect:
+            return VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+        case AccessKind::transfer_read:
+            return VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+        case AccessKind::transfer_write:
+            return VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+        default:
+            return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    }
+}
+
 bool layout_fits(VkImageLayout layout, AccessKind kind, VkFormat format) {
     switch (kind) {
         case AccessKind::colour_attachment:

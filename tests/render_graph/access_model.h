@@ -28,7 +28,13 @@ std::vector<Step> steps_of(const graph::Access& access);
 /// What loading or clearing an attachment does.
 Step load_step(VkFormat format, VkAttachmentLoadOp load);
 bool writes(const std::vector<Step>& steps);
+bool used_as_attachment(graph::AccessKind kind);
 bool has_depth(VkFormat format);
+bool has_stencil(VkFormat format);
+VkImageAspectFlags aspects_of(VkFormat format);
+/// What an image or a buffer must be created for.
+VkImageUsageFlags image_usage_of(graph::AccessKind kind, VkFormat format);
+VkBufferUsageFlags buffer_usage_of(graph::AccessKind kind);
 bool layout_fits(VkImageLayout layout, graph::AccessKind kind, VkFormat format);
 
 /// What one stage did to a resource, and what is known to come after it.

@@ -1,6 +1,7 @@
 #include "tests/render_graph/hazard_checker.h"
 
 #include "tests/render_graph/access_model.h"
+#include "tests/render_graph/plan_checker.h"
 
 #include <algorithm>
 #include <map>
@@ -20,14 +21,22 @@ struct ResourceState {
 
 class Walker {
   public:
-    Walker(const graph::Graph& graph, const graph::Plan& plan, const std::vector<uint64_t>& sizes)
-        : graph_(graph), plan_(plan), sizes_(sizes), states_(graph.declaration().resources.size()) {
+    Walker(const graph::Graph& graph, const graph::Plan& plan, const std::vector<graph::MemoryRequirement>& memory)
+        : graph_(graph),
+          plan_(plan),
+          sharers_(find_sharers(plan, memory)),
+          states_(graph.declaration().resources.size()) {
         find_expected_makers();
     }
 
     std::vector<std::string> walk() {
         check_order();
         if (!problems_.empty()) return problems_;
+        for (const graph::Group& group : plan_.groups) {
+            if (group.render_pass == none) continue;
+            if (plan_.render_passes[group.render_pass].subpasses.count != group.passes.count)
+                return problems_;  // which the plan checker reports
+        }
         start_histories();
         // What a history wrote in one frame is read in the next, and overwritten in the one after.
         for (frame_ = 0; frame_ < (histories_.empty() ? 2 : 4); ++frame_) {
@@ -107,7 +116,7 @@ class Walker {
                 for (const uint32_t pass : slice(plan_.order, group.passes))
                     use_pass(pass, none);
             } else {
-                walk_render_pass(plan_.render_passes[group.render_pass], group);
+                walk_render_pass(plan_.render_passes[group.render_pass]);
             }
         }
         apply_batch(plan_.final_barriers, none);
@@ -186,32 +195,20 @@ class Walker {
 
     /// Stages wait as a whole, so the barrier orders what was done to resources in the same bytes too.
     void apply_barrier(uint32_t resource, const graph::Scope& source, const graph::Scope& destination) {
-        std::vector<uint32_t> resources = sharers(resource);
-        resources.push_back(resource);
-        for (const uint32_t each : resources) {
-            for (Atom& atom : states_[each].reads)
+        const auto extend = [&](ResourceState& state) {
+            for (Atom& atom : state.reads)
                 atom.extend(source, destination);
-            for (Atom& atom : states_[each].writes)
+            for (Atom& atom : state.writes)
                 atom.extend(source, destination);
-        }
-    }
-
-    /// Resources that share bytes with this one.
-    std::vector<uint32_t> sharers(uint32_t resource) const {
-        std::vector<uint32_t> found;
-        const graph::PlannedResource& a = plan_.resources[resource];
-        if (a.heap == none) return found;
-        for (uint32_t other = 0; other < states_.size(); ++other) {
-            const graph::PlannedResource& b = plan_.resources[other];
-            if (other == resource || b.heap != a.heap) continue;
-            if (a.offset < b.offset + sizes_[other] && b.offset < a.offset + sizes_[resource]) found.push_back(other);
-        }
-        return found;
+        };
+        extend(states_[resource]);
+        for (const uint32_t other : sharers_[resource])
+            extend(states_[other]);
     }
 
     /// The resource begins anew in its memory: whoever else used these bytes must be done, and loses its contents.
     void take_memory(uint32_t pass, uint32_t resource, const graph::Scope& source) {
-        for (const uint32_t other : sharers(resource)) {
+        for (const uint32_t other : sharers_[resource]) {
             ResourceState& state = states_[other];
             for (const Atom& atom : state.reads) {
                 if (!atom.ordered_before(source.stages)) report(pass, resource, "takes memory that is still read");
@@ -282,10 +279,34 @@ class Walker {
                     report(pass, resource, "is used before what was written is visible");
                 }
             }
+            check_sharers(pass, resource, step, subpass);
             if (step.writes == 0) continue;
             for (const Atom& atom : state.reads) {
                 if (!atom.ordered(step.stage, subpass)) report(pass, resource, "is written while it is still read");
             }
+        }
+    }
+
+    /// Nothing that was done to others in these bytes may still be under way.
+    void check_sharers(uint32_t pass, uint32_t resource, const Step& step, uint32_t subpass) {
+        for (const uint32_t other : sharers_[resource]) {
+            for (const std::vector<Atom>* atoms : {&states_[other].reads, &states_[other].writes}) {
+                for (const Atom& atom : *atoms) {
+                    if (!atom.ordered(step.stage, subpass) || (atom.writes != 0 && !atom.available)) {
+                        report(pass, resource,
+                               "is used while " + graph::quote_resource(graph_, other) +
+                                   " is still used in the same bytes");
+                    }
+                }
+            }
+        }
+    }
+
+    /// After a write nobody else has contents in these bytes.
+    void wipe_sharers(uint32_t resource) {
+        for (const uint32_t other : sharers_[resource]) {
+            states_[other].has_contents = false;
+            states_[other].layout = VK_IMAGE_LAYOUT_UNDEFINED;
         }
     }
 
@@ -294,6 +315,7 @@ class Walker {
         if (writes(steps)) {
             state.writes.clear();
             state.reads.clear();
+            wipe_sharers(resource);
         }
         for (const Step& step : steps) {
             Atom atom;
@@ -340,58 +362,31 @@ class Walker {
         std::map<uint32_t, VkImageLayout> layouts;
     };
 
-    std::vector<AttachmentUse> attachment_uses(const graph::RenderPass& render_pass, const graph::Group& group) {
+    std::vector<AttachmentUse> attachment_uses(const graph::RenderPass& render_pass) const {
         std::vector<AttachmentUse> uses(render_pass.attachments.count);
         const auto subpasses = slice(plan_.subpasses, render_pass.subpasses);
-        const auto passes = slice(plan_.order, group.passes);
-        if (subpasses.size() != passes.size()) problems_.push_back("a subpass is missing");
         for (uint32_t subpass = 0; subpass < subpasses.size(); ++subpass) {
             const graph::Subpass& planned = subpasses[subpass];
-            if (planned.pass != passes[subpass]) problems_.push_back("subpasses are out of order");
-            std::vector<std::pair<AccessKind, uint32_t>> wanted, found;
-            for (const graph::Access& access : graph_.accesses(planned.pass)) {
-                if (graph::is_attachment(access.kind)) wanted.emplace_back(access.kind, access.resource);
-            }
-            const auto note = [&](graph::Range range, AccessKind kind) {
+            for (const graph::Range range : {planned.colours, planned.inputs, planned.depth_stencil}) {
                 for (const graph::AttachmentReference& reference : slice(plan_.references, range)) {
                     AttachmentUse& use = uses[reference.attachment];
                     use.first = std::min(use.first, subpass);
                     use.last = subpass;
                     use.layouts[subpass] = reference.layout;
-                    const uint32_t resource =
-                        slice(plan_.attachments, render_pass.attachments)[reference.attachment].resource;
-                    const bool read_only = reference.layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-                    const bool depth = kind == AccessKind::depth_stencil_attachment;
-                    found.emplace_back(depth && read_only ? AccessKind::depth_stencil_read : kind, resource);
                 }
-            };
-            note(planned.colours, AccessKind::colour_attachment);
-            note(planned.inputs, AccessKind::input_attachment);
-            note(planned.depth_stencil, AccessKind::depth_stencil_attachment);
-            std::stable_sort(wanted.begin(), wanted.end(), by_kind);
-            std::stable_sort(found.begin(), found.end(), by_kind);
-            if (wanted != found) problems_.push_back("a subpass does not reference what its pass declares");
+            }
         }
         return uses;
     }
 
-    static bool by_kind(const std::pair<AccessKind, uint32_t>& a, const std::pair<AccessKind, uint32_t>& b) {
-        return a.first < b.first;  // within a kind, declaration order is the order of locations and indices
-    }
-
-    void walk_render_pass(const graph::RenderPass& render_pass, const graph::Group& group) {
-        const std::vector<AttachmentUse> uses = attachment_uses(render_pass, group);
-        if (!problems_.empty()) return;
+    void walk_render_pass(const graph::RenderPass& render_pass) {
+        const std::vector<AttachmentUse> uses = attachment_uses(render_pass);
         const auto attachments = slice(plan_.attachments, render_pass.attachments);
         const auto subpasses = slice(plan_.subpasses, render_pass.subpasses);
         for (uint32_t i = 0; i < attachments.size(); ++i) {
             const uint32_t resource = attachments[i].resource;
             if (attachments[i].initial_layout != states_[resource].layout) {
                 report(subpasses[0].pass, resource, "enters the render pass in another layout than planned");
-            }
-            const graph::ImageDescription& image = declared(resource).image;
-            if (image.width != render_pass.width || image.height != render_pass.height) {
-                report(subpasses[0].pass, resource, "has another size than the render pass");
             }
         }
         for (uint32_t subpass = 0; subpass < subpasses.size(); ++subpass) {
@@ -475,9 +470,14 @@ class Walker {
 
     /// Storing comes after every use in the last subpass; uses in subpasses before must be ordered by dependencies.
     void store(const graph::Attachment& attachment, uint32_t pass, uint32_t subpass) {
-        if (attachment.store == VK_ATTACHMENT_STORE_OP_NONE) return;
         const uint32_t resource = attachment.resource;
         ResourceState& state = states_[resource];
+        if (attachment.store == VK_ATTACHMENT_STORE_OP_NONE) {
+            // What a render pass wrote and does not store is lost.
+            const auto here = [](const Atom& atom) { return atom.subpass != none; };
+            if (std::any_of(state.writes.begin(), state.writes.end(), here)) state.has_contents = false;
+            return;
+        }
         for (const Atom& atom : state.reads) {
             if (atom.subpass != subpass && atom.after == 0 && atom.after_in.count(subpass) == 0) {
                 report(pass, resource, "is stored while an earlier subpass still reads it");
@@ -494,7 +494,7 @@ class Walker {
 
     const graph::Graph& graph_;
     const graph::Plan& plan_;
-    const std::vector<uint64_t>& sizes_;
+    std::vector<std::vector<uint32_t>> sharers_;  // one a resource: who has bytes in common with it
     std::vector<ResourceState> states_;
     std::vector<uint32_t> expected_;      // one an access: the pass whose contents it finds
     std::vector<uint32_t> final_makers_;  // one a resource: the last pass that writes it
@@ -506,8 +506,11 @@ class Walker {
 }  // namespace
 
 std::vector<std::string> find_hazards(const graph::Graph& graph, const graph::Plan& plan,
-                                      const std::vector<uint64_t>& sizes) {
-    return Walker(graph, plan, sizes).walk();
+                                      const std::vector<graph::MemoryRequirement>& memory) {
+    std::vector<std::string> problems = find_flaws(graph, plan, memory);
+    const std::vector<std::string> hazards = Walker(graph, plan, memory).walk();
+    problems.insert(problems.end(), hazards.begin(), hazards.end());
+    return problems;
 }
 
 }  // namespace splice::test

@@ -1,5 +1,7 @@
 #include "tests/render_graph/random_graph.h"
 
+#include <algorithm>
+#include <random>
 #include <string>
 
 namespace splice::test {
@@ -14,6 +16,9 @@ class Tape {
     bool done() const { return next_ >= numbers_.size(); }
     /// 0 .. limit - 1; 0 when the tape has ended.
     uint32_t take(uint32_t limit) { return done() ? 0 : numbers_[next_++] % limit; }
+    size_t size() const { return numbers_.size(); }
+    /// Where a share of `count` things ends that is as large as that of the tape which was taken.
+    size_t share(size_t count) const { return done() ? count : count * next_ / numbers_.size(); }
 
   private:
     const std::vector<uint32_t>& numbers_;
@@ -27,13 +32,18 @@ class Declarer {
         : graph_(graph), tape_(tape), record_(record) {}
 
     void run() {
-        const uint32_t images = 2 + tape_.take(7), buffers = 1 + tape_.take(4);
+        // A frame of many passes has many images, each in use for a while: the stuff of aliasing.
+        const auto length = static_cast<uint32_t>(tape_.size());
+        const uint32_t images = 2 + tape_.take(7 + length / 20), buffers = 1 + tape_.take(4 + length / 60);
+        reach_ = tape_.take(3) == 0 ? UINT32_MAX : 3 + tape_.take(6);
         for (uint32_t i = 0; i < images; ++i)
             add_image(i);
         for (uint32_t i = 0; i < buffers; ++i)
             add_buffer(i);
-        while (!tape_.done())
+        while (!tape_.done()) {
             add_pass();
+            if (tape_.take(8) == 1) add_look();
+        }
         // What is read of the last frame must be made in this one.
         for (const size_t history : histories_) {
             if (images_[history].version != 0) continue;
@@ -67,26 +77,33 @@ class Declarer {
         description.format = formats[tape_.take(4)];
         description.width = description.height = tape_.take(4) == 0 ? 64 : 128;
         const std::string name = "image" + std::to_string(index);
-        const uint32_t residence = tape_.take(8);
-        if (residence == 7) {
+        const uint32_t residence = tape_.take(16);
+        if (residence == 15) {
             const graph::ImageHistory history = graph_.create_history_image(name, description, {});
             images_.push_back(history.previous);
             histories_.push_back(images_.size());
             images_.push_back(history.current);
         } else {
-            images_.push_back(residence < 2 ? graph_.import_image(name, description, import_options(true))
+            images_.push_back(residence < 3 ? graph_.import_image(name, description, import_options(true))
                                             : graph_.create_image(name, description));
         }
     }
 
     void add_buffer(uint32_t index) {
         const std::string name = "buffer" + std::to_string(index);
-        buffers_.push_back(tape_.take(3) == 0 ? graph_.import_buffer(name, {256}, import_options(false))
+        buffers_.push_back(tape_.take(4) == 0 ? graph_.import_buffer(name, {256}, import_options(false))
                                               : graph_.create_buffer(name, {256}));
     }
 
-    graph::ImageHandle& some_image() { return images_[tape_.take(static_cast<uint32_t>(images_.size()))]; }
-    graph::BufferHandle& some_buffer() { return buffers_[tape_.take(static_cast<uint32_t>(buffers_.size()))]; }
+    /// One in reach: those in reach move on as the frame does.
+    template <typename Handle>
+    Handle& some(std::vector<Handle>& handles) {
+        const auto count = static_cast<uint32_t>(handles.size());
+        const uint32_t reach = std::min(reach_, count);
+        return handles[tape_.share(count - reach) + tape_.take(reach)];
+    }
+    graph::ImageHandle& some_image() { return some(images_); }
+    graph::BufferHandle& some_buffer() { return some(buffers_); }
     Contents some_contents(bool attachment) {
         switch (tape_.take(attachment ? 4 : 3)) {
             case 0:
@@ -126,6 +143,16 @@ class Declarer {
                 fill_graphics_pass(pass);
                 break;
         }
+    }
+
+    /// Looks at the images in reach, so that what leads there is kept.
+    void add_look() {
+        graph::Pass pass = graph_.add_pass("look" + std::to_string(passes_++), PassKind::compute);
+        if (record_) pass.record(record_(pass.index()));
+        const size_t reach = std::min<size_t>({images_.size(), reach_, 8}), first = tape_.share(images_.size() - reach);
+        for (size_t i = first; i < first + reach; ++i)
+            attempt([&] { pass.sampled(images_[i]); });
+        pass.side_effect();
     }
 
     void fill_graphics_pass(graph::Pass& pass) {
@@ -256,6 +283,7 @@ class Declarer {
     std::vector<graph::BufferHandle> buffers_;
     std::vector<size_t> histories_;  // their current halves, in images_
     uint32_t passes_ = 0;
+    uint32_t reach_ = UINT32_MAX;  // how many resources a pass chooses among
 };
 
 }  // namespace
@@ -265,12 +293,21 @@ void declare_random(graph::Graph& graph, const std::vector<uint32_t>& tape,
     Declarer(graph, tape, record).run();
 }
 
+std::vector<uint32_t> random_tape(size_t length, uint32_t seed) {
+    std::minstd_rand random(seed);
+    std::vector<uint32_t> tape(length);
+    for (uint32_t& number : tape)
+        number = static_cast<uint32_t>(random()) >> 3;
+    return tape;
+}
+
 std::vector<graph::MemoryRequirement> random_sizes(const graph::Graph& graph, uint32_t seed) {
     std::vector<graph::MemoryRequirement> sizes;
+    const bool one_type = seed % 4 != 0;
     for (size_t i = 0; i < graph.declaration().resources.size(); ++i) {
         seed = seed * 1664525U + 1013904223U;
         const uint64_t size = (uint64_t{256} << (seed >> 28)) + ((seed >> 8) % 4096);
-        sizes.push_back({size, uint64_t{64} << ((seed >> 20) % 4), (seed >> 10) % 3 == 0 ? 2U : 3U});
+        sizes.push_back({size, uint64_t{64} << ((seed >> 20) % 4), !one_type && (seed >> 10) % 3 == 0 ? 2U : 3U});
     }
     return sizes;
 }

@@ -186,3 +186,27 @@ TEST_CASE("a read-only attachment is neither stored nor in the way of other read
     }
     CHECK(test::find_hazards(graph, plan).empty());
 }
+
+TEST_CASE("what readers with a barrier each saw of a history is made visible anew to those of the next frame") {
+    graph::Graph graph;
+    constexpr graph::ImageDescription description{VK_FORMAT_R8G8B8A8_UNORM, 8, 8};
+    const graph::ImageHistory history = graph.create_history_image("history", description, {});
+    const graph::ImageHandle target = graph.create_image("target", description);
+    auto blend = graph.add_pass("blend", graph::PassKind::graphics);
+    blend.sampled(history.previous, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT);
+    const auto current = blend.colour_attachment(history.current, graph::Contents::discard());
+    blend.side_effect();
+    auto displace = graph.add_pass("displace", graph::PassKind::graphics);
+    displace.sampled(current, VK_PIPELINE_STAGE_VERTEX_SHADER_BIT);
+    const auto drawn = displace.colour_attachment(target, graph::Contents::discard());
+    displace.side_effect();
+    auto show = graph.add_pass("show", graph::PassKind::graphics);
+    show.input_attachment(current);
+    show.colour_attachment(drawn, graph::Contents::keep());
+    show.side_effect();
+    for (const bool batch : {true, false}) {
+        graph::CompileOptions options;
+        options.batch_barriers = batch;
+        CHECK(test::find_hazards(graph, graph::compile(graph, options)).empty());
+    }
+}

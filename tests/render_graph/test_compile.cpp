@@ -330,7 +330,7 @@ TEST_CASE("lifetimes, usage and aliasing") {
     CHECK(plan.resources[a.resource].offset != plan.resources[b.resource].offset);
     CHECK(plan.heaps[0].size == 1024 + 1000);
     CHECK(plan.resources[target.resource].heap == graph::none);
-    CHECK(test::find_hazards(graph, plan, {1000, 1000, 1000, 1000}).empty());
+    CHECK(test::find_hazards(graph, plan, std::vector<graph::MemoryRequirement>(4, {1000, 256, 1})).empty());
     options.alias = false;
     CHECK(graph::compile(graph, options).heaps[0].size == 2 * 1024 + 1000);
 }

@@ -111,9 +111,30 @@ TEST_CASE_METHOD(Fixture, "handles of another graph and passes that are complete
     graph::Pass late = graph.add_pass("late", PassKind::graphics);
     CHECK_THROWS_WITH(early.colour_attachment(colour, kClear), Contains("pass 'early'") && Contains("is complete"));
     CHECK_THROWS_WITH(early.side_effect(), Contains("is complete"));
-    CHECK_THROWS_WITH(late.colour_attachment({99, 0}, kClear), Contains("no image of this graph"));
-    CHECK_THROWS_WITH(late.colour_attachment({buffer.resource, 0}, kClear), Contains("no image of this graph"));
-    CHECK_THROWS_WITH(late.vertex_buffer({colour.resource, 0}), Contains("no buffer of this graph"));
+    CHECK_THROWS_WITH(late.colour_attachment({99, 0, graph.id()}, kClear), Contains("no image of this graph"));
+    CHECK_THROWS_WITH(late.colour_attachment({buffer.resource, 0, graph.id()}, kClear),
+                      Contains("no image of this graph"));
+    CHECK_THROWS_WITH(late.vertex_buffer({colour.resource, 0, graph.id()}), Contains("no buffer of this graph"));
+    // A resource of the same kind, place and version, but another one's.
+    graph::Graph another;
+    const graph::ImageHandle theirs = another.create_image("theirs", {kColour, 64, 64});
+    CHECK(theirs.resource == colour.resource);
+    CHECK_THROWS_WITH(late.colour_attachment(theirs, kClear),
+                      Contains("pass 'late'") && Contains("no image of this graph"));
+}
+
+TEST_CASE_METHOD(Fixture, "handles and passes from before clear() are refused") {
+    graph::Pass old = graph.add_pass("old", PassKind::graphics);
+    graph.clear();
+    CHECK_THROWS_WITH(old.side_effect(), Contains("pass 0") && Contains("was cleared") && Contains("add it anew"));
+    const graph::ImageHandle anew = graph.create_image("new", {kColour, 64, 64});
+    CHECK(anew.resource == colour.resource);
+    graph::Pass pass = graph.add_pass("new", PassKind::graphics);
+    CHECK_THROWS_WITH(old.colour_attachment(anew, kClear), Contains("was cleared"));
+    CHECK_THROWS_WITH(old.record({}), Contains("was cleared"));
+    CHECK_THROWS_WITH(pass.colour_attachment(colour, kClear), Contains("since it was last cleared"));
+    const graph::ImageHandle drawn = pass.colour_attachment(anew, kClear);
+    CHECK(drawn == graph.image(anew.resource));
 }
 
 TEST_CASE_METHOD(Fixture, "a refused access leaves the graph as it was") {
@@ -189,7 +210,8 @@ TEST_CASE("a graphics pass without an attachment has no area") {
 
 TEST_CASE_METHOD(Fixture, "a cycle cannot be declared: contents can only be named once they are written") {
     graph::Pass first = graph.add_pass("first", PassKind::graphics);
-    const graph::ImageHandle later{other.resource, 1};  // what the second pass is going to make of the first's output
+    const graph::ImageHandle later{other.resource, 1,
+                                   graph.id()};  // what the second pass is going to make of the first's output
     CHECK_THROWS_WITH(first.sampled(later), Contains("pass 'first', image 'other': no pass has written these contents "
                                                      "yet; add the writing pass before"));
     colour = first.colour_attachment(colour, kClear);

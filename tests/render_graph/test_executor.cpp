@@ -155,6 +155,57 @@ TEST_CASE("bindings that are missing or do not match are refused by name") {
     bindings.bind(target, image);
     CHECK_THROWS_WITH(execute(bindings), Catch::Contains("image 'target'") && Catch::Contains("usage"));
     declare(9);
-    CHECK_THROWS_WITH(execute(bindings), Catch::Contains("image 'target'") && Catch::Contains("size"));
+    CHECK_THROWS_WITH(execute(bindings), Catch::Contains("image 'target'") && Catch::Contains("8 x 8 pixels") &&
+                                             Catch::Contains("declaration, 9 x 8 pixels"));
+    const graph::ImageHandle unknown{7, 0, graph.id()};
+    graph::Bindings wrong;
+    wrong.bind(unknown, image);
+    CHECK_THROWS_WITH(execute(wrong), Catch::Contains("resource 7 of 1") && Catch::Contains("import_image"));
+    CHECK_THROWS_WITH(executor.execute(graph, bindings, VK_NULL_HANDLE, 3),
+                      Catch::Contains("frame slot 3") && Catch::Contains("slots 0 to 0"));
+    CHECK(gpu.complaints().empty());
+}
+
+TEST_CASE("an invalid frame is refused each time, and frames that look alike have plans of their own") {
+    test::ValidatedDevice gpu;
+    graph::ExecutorOptions options;
+    options.cull = false;
+    graph::Executor executor(gpu.device, options);
+    graph::Graph graph;
+    int recorded = 0;
+    const auto declare = [&](bool reads) {
+        graph.clear();
+        const graph::ImageHandle colour = graph.create_image("colour", {VK_FORMAT_R8G8B8A8_UNORM, 64, 64});
+        const graph::ImageHandle depth =
+            graph.import_image("depth", {VK_FORMAT_D32_SFLOAT, 64, 64},
+                               {.before = {{VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT, 0},
+                                           VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL}});
+        const auto count = [&](const graph::PassContext&) { ++recorded; };
+        graph::Pass draw = graph.add_pass("draw", graph::PassKind::graphics);
+        draw.colour_attachment(colour, Contents::discard());
+        draw.record(count);
+        if (reads) {
+            draw.depth_stencil_read(depth);
+        } else {
+            graph.add_pass("empty compute", graph::PassKind::compute).record(count);
+            graph.add_pass("empty transfer", graph::PassKind::transfer).record(count);
+        }
+    };
+    const auto execute = [&] {
+        gpu.device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, {}, commands); });
+    };
+    declare(false);
+    execute();
+    CHECK(recorded == 3);
+    declare(true);
+    CHECK_THROWS_WITH(execute(), Catch::Contains("image 'depth'") && Catch::Contains("not bound"));
+    CHECK(executor.statistics().compilations == 2);
+
+    declare(false);
+    graph.add_pass("nowhere", graph::PassKind::graphics);
+    for (int frame = 0; frame < 2; ++frame)
+        CHECK_THROWS_WITH(execute(), Catch::Contains("pass 'nowhere'") && Catch::Contains("needs an attachment"));
+    CHECK(executor.statistics().compilations == 2);
+    CHECK(recorded == 3);
     CHECK(gpu.complaints().empty());
 }

@@ -133,3 +133,24 @@ TEST_CASE("passes have times under their names, a set for each frame in flight")
     }
     CHECK(gpu.complaints().empty());
 }
+
+TEST_CASE("what each pass did is counted by the device where it can") {
+    test::ValidatedDevice gpu;
+    graph::ExecutorOptions options;
+    options.pipeline_statistics = true;
+    graph::Executor executor(gpu.device, options);
+    test::SurfelFrame frame(gpu.device, 32, 32);
+    for (int i = 0; i < 2; ++i)
+        frame.run(executor);
+    const std::vector<graph::PassTiming> timings = executor.timings();
+    REQUIRE(timings.size() == 5);
+    for (const graph::PassTiming& timing : timings) {
+        CHECK(timing.counts.has_value() == (gpu.device.features().pipeline_statistics && timing.name != "read_back"));
+    }
+    if (gpu.device.features().pipeline_statistics) {
+        CHECK(timings[0].counts->input_vertices == 3);
+        CHECK(timings[0].counts->fragment_invocations >= 32 * 32);
+        CHECK(timings[2].counts->input_vertices == 6);
+    }
+    CHECK(gpu.complaints().empty());
+}

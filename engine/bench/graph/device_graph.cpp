@@ -24,14 +24,14 @@ void DeviceGraph::create_imported(uint32_t resource) {
                                         .height = declared.image.height,
                                         .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                                         .name = graph_.resource_name(resource)});
-        bindings_.bind(graph::ImageHandle{resource, 0}, images_.back());
+        bindings_.bind(graph_.image(resource), images_.back());
         return;
     }
     buffers_.emplace_back(*device_, gpu::BufferOptions{.size = declared.buffer.size,
                                                        .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                                        .memory = gpu::MemoryUse::readback,
                                                        .name = graph_.resource_name(resource)});
-    bindings_.bind(graph::BufferHandle{resource, 0}, buffers_.back());
+    bindings_.bind(graph_.buffer(resource), buffers_.back());
 }
 
 std::vector<std::byte> DeviceGraph::results() {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace splice::bench {
 namespace {
@@ -22,21 +23,28 @@ double us_since(Clock::time_point start) {
 
 struct Variant {
     const char* name;
-    bool merge, alias, batch_barriers;
+    bool cull = true, merge = true, alias = true, batch_barriers = true;
+    std::optional<uint64_t> random_order = {};
 };
 
 constexpr Variant kVariants[] = {
-    {"as compiled", true, true, true},          {"no merging", false, true, true},
-    {"no aliasing", true, false, true},         {"one barrier an access", true, true, false},
-    {"none of the three", false, false, false},
+    {.name = "as compiled"},
+    {.name = "no culling", .cull = false},
+    {.name = "no merging", .merge = false},
+    {.name = "no aliasing", .alias = false},
+    {.name = "one barrier an access", .batch_barriers = false},
+    {.name = "random order", .random_order = 1},
+    {.name = "none of these", .cull = false, .merge = false, .alias = false, .batch_barriers = false},
 };
 
 graph::ExecutorOptions executor_options(const Variant& variant) {
     graph::ExecutorOptions options;
     options.timestamps = false;
+    options.cull = variant.cull;
     options.merge = variant.merge;
     options.alias = variant.alias;
     options.batch_barriers = variant.batch_barriers;
+    options.random_order = variant.random_order;
     return options;
 }
 

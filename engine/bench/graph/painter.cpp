@@ -14,7 +14,7 @@ Painter::PaintedPass Painter::study(const graph::Graph& graph, uint32_t pass) co
     PaintedPass painted;
     for (const graph::Access& access : graph.accesses(pass)) {
         const VkFormat format = graph.declaration().resources[access.resource].image.format;
-        const Read read{{access.resource, access.version}, graph::layout_of(access.kind, format)};
+        const Read read{graph.image(access.resource), graph::layout_of(access.kind, format)};
         switch (access.kind) {
             case graph::AccessKind::sampled:
                 if (painted.sampled.size() < kMaxSampled) painted.sampled.push_back(read);

@@ -104,7 +104,9 @@ class BarrierPlanner {
             const std::span<const GroupUse> uses = compilation_.uses_of_resource(resource + 1);
             before.exit = last_exit_[resource + 1];
             before.exit_layout = uses.back().exit_layout;
-            before.writes = uses.back().writes;
+            // Readers with a barrier each saw the contents each with its own stages and accesses: what all of them have
+            // together was made visible to none.
+            before.writes = uses.back().writes || !compilation_.options.batch_barriers;
         } else if (declared.history == HistoryRole::current) {
             // The frame before last wrote what the last one then may have read, or not.
             before.exit = waited_for(last_exit_[resource - 1]);

@@ -249,8 +249,11 @@ class Merger {
                 stack_.pop_back();
                 for (uint32_t member = groups_[node].first; member != none; member = next_[member]) {
                     for (const Edge& back : compilation_.predecessors_of(member)) {
-                        if (compilation_.group_of[back.from] == group || budget == 0) return false;
-                        --budget;
+                        if (compilation_.group_of[back.from] == group) return false;
+                        if (budget-- == 0) {
+                            unmerged.reason = UnmergedReason::gave_up;
+                            return false;
+                        }
                         push(back.from);
                     }
                 }

@@ -1,10 +1,17 @@
 #include "engine/render_graph/executor/compiled_frame.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
 namespace splice::graph {
 namespace {
+
+std::string text_of(const ImageDescription& image) {
+    return std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels of format " +
+           std::to_string(image.format) + " with " + std::to_string(image.layers) + " layers, " +
+           std::to_string(image.mip_levels) + " levels and " + std::to_string(image.samples) + " samples";
+}
 
 bool has_lazy_memory(const gpu::Device& device) {
     VkPhysicalDeviceMemoryProperties properties;
@@ -68,6 +75,12 @@ CompiledFrame::CompiledFrame(gpu::Device& device, RenderPassCache& render_passes
     }
     framebuffers_.resize(plan_.render_passes.size());
     fill_in_barriers();
+    for (const Attachment& attachment : plan_.attachments)
+        views_.push_back(bound_[attachment.resource].image.view);
+    clear_values_.resize(plan_.attachments.size());
+    find_moving();
+    bound_by_.assign(bound_.size(), 0);
+    wanted_bindings_ = static_cast<size_t>(std::count(needs_binding_.begin(), needs_binding_.end(), uint8_t{1}));
 }
 
 void CompiledFrame::fill_in_barriers() {
@@ -82,6 +95,7 @@ void CompiledFrame::fill_in_barriers() {
         barrier.newLayout = planned.new_layout;
         barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
         const VkFormat format = declaration_.resources[planned.resource].image.format;
+        barrier.image = bound_[planned.resource].image.image;
         barrier.subresourceRange = {gpu::format_aspects(format), 0, VK_REMAINING_MIP_LEVELS, 0,
                                     VK_REMAINING_ARRAY_LAYERS};
         image_barriers_.push_back(barrier);
@@ -94,16 +108,41 @@ void CompiledFrame::fill_in_barriers() {
         barrier.dstStageMask = planned.destination.stages;
         barrier.dstAccessMask = planned.destination.access;
         barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.buffer = bound_[planned.resource].buffer;
         barrier.size = VK_WHOLE_SIZE;
         buffer_barriers_.push_back(barrier);
     }
 }
 
-void CompiledFrame::update_barriers() {
-    for (size_t i = 0; i < image_barriers_.size(); ++i)
+void CompiledFrame::find_moving() {
+    const auto collect = [&](const auto& planned, std::vector<uint32_t>& moving) {
+        for (uint32_t i = 0; i < planned.size(); ++i) {
+            if (!declaration_.resources[planned[i].resource].transient()) moving.push_back(i);
+        }
+    };
+    collect(plan_.image_barriers, moving_image_barriers_);
+    collect(plan_.buffer_barriers, moving_buffer_barriers_);
+    collect(plan_.attachments, moving_attachments_);
+}
+
+void CompiledFrame::update() {
+    if (!std::exchange(changed_, false)) return;
+    ++bindings_;
+    for (const uint32_t i : moving_image_barriers_)
         image_barriers_[i].image = bound_[plan_.image_barriers[i].resource].image.image;
-    for (size_t i = 0; i < buffer_barriers_.size(); ++i)
+    for (const uint32_t i : moving_buffer_barriers_)
         buffer_barriers_[i].buffer = bound_[plan_.buffer_barriers[i].resource].buffer;
+    for (const uint32_t i : moving_attachments_)
+        views_[i] = bound_[plan_.attachments[i].resource].image.view;
+}
+
+const VkClearValue* CompiledFrame::clear_values(const Graph& graph, uint32_t render_pass) {
+    const Range range = plan_.render_passes[render_pass].attachments;
+    for (uint32_t i = range.first; i < range.first + range.count; ++i) {
+        const uint32_t access = plan_.attachments[i].clear_access;
+        if (access != none) clear_values_[i] = graph.clear_value(access);
+    }
+    return clear_values_.data() + range.first;
 }
 
 VkImageCreateInfo CompiledFrame::image_info(uint32_t resource, const PlannedResource& planned) const {
@@ -247,30 +286,42 @@ VkBuffer CompiledFrame::make_buffer(const std::string& name, const VkBufferCreat
 }
 
 void CompiledFrame::bind(const Graph& graph, const Bindings& bindings) {
-    std::vector<uint8_t> missing = needs_binding_;
+    ++bind_calls_;
+    size_t missing = wanted_bindings_;
     for (const Bindings::Entry& entry : bindings.entries()) {
         if (entry.resource >= declaration_.resources.size() || !declaration_.resources[entry.resource].imported) {
-            throw GraphError("a binding names a resource that the graph does not import");
+            const bool known = entry.resource < declaration_.resources.size();
+            throw GraphError("a binding names " +
+                             (known ? quote_resource(graph, entry.resource)
+                                    : "resource " + std::to_string(entry.resource) + " of " +
+                                          std::to_string(declaration_.resources.size())) +
+                             ", which the graph does not import; bind what import_image or import_buffer returned");
         }
         const ResourceDeclaration& declared = declaration_.resources[entry.resource];
         const PlannedResource& planned = plan_.resources[entry.resource];
-        const std::string name = quote_resource(graph, entry.resource);
+        const auto name = [&] { return quote_resource(graph, entry.resource); };
         if (declared.kind == ResourceKind::image) {
             if (entry.bound.image.image == VK_NULL_HANDLE || !(entry.image == declared.image)) {
-                throw GraphError(name + ": what is bound differs from the declaration in format, size or samples");
+                throw GraphError(name() + ": what is bound, " + text_of(entry.image) +
+                                 ", differs from the declaration, " + text_of(declared.image) +
+                                 "; declare it as it is");
             }
             if ((planned.image_usage & ~entry.bound.image.usage) != 0) {
-                throw GraphError(name + ": what is bound was created without a usage that the passes need");
+                throw GraphError(name() + ": what is bound was created without a usage that the passes need");
             }
         } else if (entry.bound.buffer == VK_NULL_HANDLE || entry.buffer.size < declared.buffer.size) {
-            throw GraphError(name + ": what is bound is smaller than the " + std::to_string(declared.buffer.size) +
+            throw GraphError(name() + ": what is bound is smaller than the " + std::to_string(declared.buffer.size) +
                              " bytes declared");
         }
-        bound_[entry.resource] = entry.bound;
-        missing[entry.resource] = 0;
+        BoundResource& bound = bound_[entry.resource];
+        changed_ = changed_ || bound.image.image != entry.bound.image.image ||
+                   bound.image.view != entry.bound.image.view || bound.buffer != entry.bound.buffer;
+        bound = entry.bound;
+        if (needs_binding_[entry.resource] && bound_by_[entry.resource] != bind_calls_) --missing;
+        bound_by_[entry.resource] = bind_calls_;
     }
-    for (uint32_t resource = 0; resource < missing.size(); ++resource) {
-        if (missing[resource]) {
+    for (uint32_t resource = 0; missing > 0; ++resource) {
+        if (needs_binding_[resource] && bound_by_[resource] != bind_calls_) {
             throw GraphError(quote_resource(graph, resource) + ": is imported but not bound; add it to the bindings");
         }
     }
@@ -280,6 +331,8 @@ VkFramebuffer CompiledFrame::framebuffer(uint32_t render_pass) {
     const RenderPass& planned = plan_.render_passes[render_pass];
     Framebuffer& cached = framebuffers_[render_pass];
     const std::span<const Attachment> attachments = slice(plan_.attachments, planned.attachments);
+    if (cached.checked == bindings_) return cached.handle.get();
+    cached.checked = bindings_;
     bool fits = static_cast<bool>(cached.handle);
     for (size_t i = 0; fits && i < attachments.size(); ++i) {
         fits = cached.usages[i] == bound_[attachments[i].resource].image.usage;

@@ -36,18 +36,25 @@ class CompiledFrame {
     /// initial contents.
     void begin_histories(const Graph& graph, VkCommandBuffer commands, bool continues) {
         histories_.begin_frame(bound_);
+        changed_ = changed_ || !histories_.empty();
         if (!continues) histories_.reset(commands, graph, plan_);
     }
     uint32_t history_side() const { return histories_.side(); }
     const std::vector<BoundResource>& bound() const { return bound_; }
-    /// The plan's barriers, of what is bound now; one for one.
-    void update_barriers();
+    /// Brings what follows up to date with what is bound now, if that has changed.
+    void update();
+    /// The plan's barriers, one for one.
     const std::vector<VkImageMemoryBarrier2>& image_barriers() const { return image_barriers_; }
     const std::vector<VkBufferMemoryBarrier2>& buffer_barriers() const { return buffer_barriers_; }
     const std::shared_ptr<const gpu::UniqueRenderPass>& render_pass(uint32_t index) const {
         return render_passes_[index];
     }
-    /// For the resources bound last.
+    /// One an attachment.
+    const VkImageView* views(uint32_t render_pass) const {
+        return views_.data() + plan_.render_passes[render_pass].attachments.first;
+    }
+    /// One an attachment, with the values of this frame where it is cleared.
+    const VkClearValue* clear_values(const Graph& graph, uint32_t render_pass);
     VkFramebuffer framebuffer(uint32_t render_pass);
 
     uint64_t last_used = 0;  ///< executions before this one
@@ -60,8 +67,10 @@ class CompiledFrame {
     struct Framebuffer {
         gpu::UniqueFramebuffer handle;
         std::vector<VkImageUsageFlags> usages;  // of the attachments it was made for
+        uint64_t checked = 0;                   // the bindings that it is known to fit
     };
     void fill_in_barriers();
+    void find_moving();
     MemoryRequirement requirement(uint32_t resource, const PlannedResource& planned) const;
     VkImageCreateInfo image_info(uint32_t resource, const PlannedResource& planned) const;
     VkBufferCreateInfo buffer_info(uint32_t resource, const PlannedResource& planned) const;
@@ -86,8 +95,17 @@ class CompiledFrame {
     Histories histories_;
     std::vector<BoundResource> bound_;    // one a resource
     std::vector<uint8_t> needs_binding_;  // one a resource
+    std::vector<uint64_t> bound_by_;      // one a resource: the call of bind() that bound it last
+    size_t wanted_bindings_ = 0;
+    uint64_t bind_calls_ = 0;
+    bool changed_ = true;    // a resource is another than the last time
+    uint64_t bindings_ = 0;  // how often that was so
     std::vector<VkImageMemoryBarrier2> image_barriers_;
     std::vector<VkBufferMemoryBarrier2> buffer_barriers_;
+    std::vector<VkImageView> views_;          // one an attachment of the plan
+    std::vector<VkClearValue> clear_values_;  // one an attachment of the plan
+    // Of resources that are not always the same: into the plan's barriers and attachments.
+    std::vector<uint32_t> moving_image_barriers_, moving_buffer_barriers_, moving_attachments_;
     std::vector<std::shared_ptr<const gpu::UniqueRenderPass>> render_passes_;
     std::vector<Framebuffer> framebuffers_;  // one a render pass
     uint64_t transient_bytes_ = 0;

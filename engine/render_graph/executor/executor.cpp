@@ -31,7 +31,9 @@ struct Executor::State {
     /// Times of one frame in flight.
     struct Slot {
         gpu::Timestamps timestamps;
+        gpu::PipelineStatistics counts;
         std::vector<std::string> passes;  // as recorded; the strings keep their storage
+        std::vector<uint8_t> counted;     // one a pass: it has counts
     };
 
     State(gpu::Device& device_, const ExecutorOptions& options_)
@@ -41,11 +43,8 @@ struct Executor::State {
     void record_barriers(VkCommandBuffer commands, const BarrierBatch& batch);
     void begin_render_pass(VkCommandBuffer commands, const Graph& graph, uint32_t index);
     void record_group(const Graph& graph, const Group& group, PassContext& context, Slot& slot);
-    void stamp(VkCommandBuffer commands, Slot& slot, const std::string& pass) {
-        if (!slot.timestamps) return;
-        slot.timestamps.write(commands);
-        slot.passes[stamped++] = pass;
-    }
+    void prepare_queries(VkCommandBuffer commands, Slot& slot);
+    void record_pass(const Graph& graph, uint32_t pass, const PassContext& context, Slot& slot);
 
     gpu::Device* device;
     ExecutorOptions options;
@@ -55,15 +54,24 @@ struct Executor::State {
     std::vector<Slot> slots;
     ExecutorStatistics statistics;
     uint64_t executions = 0;
-    size_t stamped = 0;  // passes of this execution
-    // Kept between calls for their storage.
-    std::vector<VkImageView> views;
-    std::vector<VkClearValue> clear_values;
+    size_t measured = 0;  // passes of this execution
 };
+
+namespace {
+
+/// The key decides; the sizes keep a plan from naming passes or resources that the graph does not have, whatever the
+/// key is worth.
+bool is_of(const CompiledFrame& frame, const Graph& graph) {
+    const Declaration &a = frame.declaration(), &b = graph.declaration();
+    return frame.key() == graph.key() && a.passes.size() == b.passes.size() && a.accesses.size() == b.accesses.size() &&
+           a.resources.size() == b.resources.size();
+}
+
+}  // namespace
 
 CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
     for (const auto& frame : frames) {
-        if (!(frame->key() == graph.key())) continue;
+        if (!is_of(*frame, graph)) continue;
         assert(frame->declaration() == graph.declaration());
         return *frame;
     }
@@ -76,7 +84,8 @@ CompiledFrame& Executor::State::find_or_compile(const Graph& graph) {
     }
     const uint64_t render_passes_before = render_passes.created();
     frames.push_back(
-        std::make_unique<CompiledFrame>(*device, render_passes, options, graph, ++statistics.compilations));
+        std::make_unique<CompiledFrame>(*device, render_passes, options, graph, statistics.compilations + 1));
+    ++statistics.compilations;
     statistics.objects_created += render_passes.created() - render_passes_before;
     return *frames.back();
 }
@@ -116,27 +125,58 @@ void Executor::State::record_barriers(VkCommandBuffer commands, const BarrierBat
 
 void Executor::State::begin_render_pass(VkCommandBuffer commands, const Graph& graph, uint32_t index) {
     const RenderPass& planned = current->plan().render_passes[index];
-    views.clear();
-    clear_values.clear();
-    for (const Attachment& attachment : slice(current->plan().attachments, planned.attachments)) {
-        views.push_back(current->bound()[attachment.resource].image.view);
-        const bool clears = attachment.clear_access != none;
-        clear_values.push_back(clears ? graph.clear_value(attachment.clear_access) : VkClearValue{});
-    }
     VkRenderPassAttachmentBeginInfo images{};
     images.sType = VK_STRUCTURE_TYPE_RENDER_PASS_ATTACHMENT_BEGIN_INFO;
-    images.attachmentCount = static_cast<uint32_t>(views.size());
-    images.pAttachments = views.data();
+    images.attachmentCount = planned.attachments.count;
+    images.pAttachments = current->views(index);
     VkRenderPassBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
     begin.pNext = &images;
     begin.renderPass = current->render_pass(index)->get();
     begin.framebuffer = current->framebuffer(index);
     begin.renderArea.extent = {planned.width, planned.height};
-    begin.clearValueCount = static_cast<uint32_t>(clear_values.size());
-    begin.pClearValues = clear_values.data();
+    begin.clearValueCount = planned.attachments.count;
+    begin.pClearValues = current->clear_values(graph, index);
     vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     ++statistics.render_passes;
+}
+
+/// Queries for each pass of the current plan.
+void Executor::State::prepare_queries(VkCommandBuffer commands, Slot& slot) {
+    measured = 0;
+    if (options.timestamps && device->features().timestamps) {
+        if (slot.timestamps.capacity() < statistics.passes + 1) {
+            slot.timestamps = gpu::Timestamps(*device, statistics.passes + 1);
+            ++statistics.objects_created;
+        }
+        slot.timestamps.reset(commands);
+        slot.timestamps.write(commands);
+    }
+    if (options.pipeline_statistics && device->features().pipeline_statistics) {
+        if (slot.counts.capacity() < std::max(statistics.passes, 1U)) {
+            slot.counts = gpu::PipelineStatistics(*device, std::max(statistics.passes, 1U));
+            ++statistics.objects_created;
+        }
+        slot.counts.reset(commands);
+    }
+    slot.passes.resize(slot.timestamps || slot.counts ? statistics.passes : 0);
+    slot.counted.resize(slot.passes.size());
+}
+
+void Executor::State::record_pass(const Graph& graph, uint32_t pass, const PassContext& context, Slot& slot) {
+    const std::string& name = graph.pass_name(pass);
+    const RecordFunction& function = graph.record_function(pass);
+    device->begin_label(context.commands, name);
+    const bool counted = slot.counts && graph.declaration().passes[pass].kind == PassKind::graphics;
+    if (counted) slot.counts.begin(context.commands);
+    if (function) function(context);
+    if (counted) slot.counts.end(context.commands);
+    device->end_label(context.commands);
+    if (slot.timestamps) slot.timestamps.write(context.commands);
+    if (slot.passes.empty()) return;
+    slot.passes[measured] = name;
+    slot.counted[measured] = counted ? 1 : 0;
+    ++measured;
 }
 
 void Executor::State::record_group(const Graph& graph, const Group& group, PassContext& context, Slot& slot) {
@@ -163,10 +203,7 @@ void Executor::State::record_group(const Graph& graph, const Group& group, PassC
             vkCmdSetViewport(commands, 0, 1, &viewport);
             vkCmdSetScissor(commands, 0, 1, &scissor);
         }
-        device->begin_label(commands, graph.pass_name(pass));
-        if (graph.record_function(pass)) graph.record_function(pass)(context);
-        device->end_label(commands);
-        stamp(commands, slot, graph.pass_name(pass));
+        record_pass(graph, pass, context, slot);
         ++context.subpass;
     }
     if (graphics) vkCmdEndRenderPass(commands);
@@ -180,13 +217,14 @@ Executor::~Executor() = default;
 void Executor::execute(const Graph& graph, const Bindings& bindings, VkCommandBuffer commands, uint32_t frame_slot) {
     State& state = *state_;
     if (frame_slot >= state.slots.size()) {
-        throw GraphError("frame slot " + std::to_string(frame_slot) + " of " + std::to_string(state.slots.size()));
+        throw GraphError("frame slot " + std::to_string(frame_slot) + ": the executor has slots 0 to " +
+                         std::to_string(state.slots.size() - 1) + "; ask for more in ExecutorOptions");
     }
     state.current = &state.find_or_compile(graph);
     CompiledFrame& frame = *state.current;
     frame.bind(graph, bindings);
     frame.begin_histories(graph, commands, frame.last_used != 0 && frame.last_used == state.executions);
-    frame.update_barriers();
+    frame.update();
     frame.last_used = ++state.executions;
 
     ExecutorStatistics& statistics = state.statistics;
@@ -196,16 +234,7 @@ void Executor::execute(const Graph& graph, const Bindings& bindings, VkCommandBu
     statistics.transient_bytes = frame.transient_bytes();
 
     State::Slot& slot = state.slots[frame_slot];
-    state.stamped = 0;
-    if (state.options.timestamps && state.device->features().timestamps) {
-        if (slot.timestamps.capacity() < statistics.passes + 1) {
-            slot.timestamps = gpu::Timestamps(*state.device, statistics.passes + 1);
-            ++statistics.objects_created;
-        }
-        slot.timestamps.reset(commands);
-        slot.timestamps.write(commands);
-        slot.passes.resize(statistics.passes);
-    }
+    state.prepare_queries(commands, slot);
 
     PassContext context;
     context.commands = commands;
@@ -228,11 +257,20 @@ const Plan& Executor::plan() const {
 
 std::vector<PassTiming> Executor::timings(uint32_t frame_slot) const {
     const State::Slot& slot = state_->slots.at(frame_slot);
-    if (!slot.timestamps) return {};
-    const std::vector<double> times = slot.timestamps.read_ms();
     std::vector<PassTiming> timings;
-    for (size_t i = 0; i < slot.passes.size(); ++i)
-        timings.push_back({slot.passes[i], times[i + 1] - times[i]});
+    for (const std::string& pass : slot.passes)
+        timings.push_back({pass});
+    if (slot.timestamps) {
+        const std::vector<double> times = slot.timestamps.read_ms();
+        for (size_t i = 0; i < timings.size(); ++i)
+            timings[i].gpu_ms = times[i + 1] - times[i];
+    }
+    if (slot.counts) {
+        const std::vector<gpu::PipelineCounts> counts = slot.counts.read();
+        for (size_t i = 0, next = 0; i < timings.size(); ++i) {
+            if (slot.counted[i]) timings[i].counts = counts[next++];
+        }
+    }
     return timings;
 }
 

@@ -27,6 +27,7 @@
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/image.h"
+#include "engine/vulkan/pipeline_statistics.h"
 
 #include <vulkan/vulkan_core.h>
 
@@ -60,7 +61,8 @@ class Bindings {
 
 struct ExecutorOptions {
     uint32_t frames_in_flight = 1;
-    bool timestamps = true;  ///< where the device has them
+    bool timestamps = true;            ///< where the device has them
+    bool pipeline_statistics = false;  ///< of graphics passes, where the device has them
     /// Compiled plans kept, with their transient resources; the one unused for longest goes first, once the device is
     /// idle. At least as many as one command buffer executes graphs.
     uint32_t max_plans = 8;
@@ -70,7 +72,8 @@ struct ExecutorOptions {
 
 struct PassTiming {
     std::string name;
-    double gpu_ms = 0;  ///< from the end of the pass recorded before it to its own end
+    double gpu_ms = 0;  ///< from the end of the pass recorded before it to its own end; 0 without timestamps
+    std::optional<gpu::PipelineCounts> counts = {};  ///< of graphics passes
 };
 
 struct ExecutorStatistics {
@@ -96,8 +99,9 @@ class Executor {
 
     /// The plan of the last execution.
     const Plan& plan() const;
-    /// Times of the passes of the slot's last execution, in recorded order, once it has finished; empty without
-    /// timestamps. Where a device works tile by tile, subpasses of one render pass overlap: only their sum is exact.
+    /// Times and counts of the passes of the slot's last execution, in recorded order, once it has finished; empty
+    /// without either. Where a device works tile by tile, subpasses of one render pass overlap: only their sum is
+    /// exact.
     std::vector<PassTiming> timings(uint32_t frame_slot = 0) const;
     const ExecutorStatistics& statistics() const;
 

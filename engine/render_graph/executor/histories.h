@@ -19,6 +19,7 @@ class Histories {
     void add(uint32_t previous, const BoundResource& a, const BoundResource& b) {
         pairs_.push_back({previous, {a, b}});
     }
+    bool empty() const { return pairs_.empty(); }
     /// 0 or 1: which of the two is the previous half in the frame begun last.
     uint32_t side() const { return side_; }
 

@@ -5,6 +5,9 @@
 #include <vulkan/vulkan.hpp>
 #include <vulkan/vulkan_to_string.hpp>
 
+#include <algorithm>
+#include <cstddef>
+
 namespace splice::graph {
 namespace {
 
@@ -115,10 +118,15 @@ class Painter {
     void add_edges() {
         std::vector<uint32_t> maker(declaration().resources.size(), none);
         for (uint32_t pass = 0; pass < declaration().passes.size(); ++pass) {
+            const size_t first = picture_.edges.size();  // a pass may read one thing in two ways
             for (const Access& access : graph_.accesses(pass)) {
                 const uint32_t from = maker[access.resource];
                 const bool reads = !is_write(access.kind) || access.contents == ContentsKind::keep;
-                if (reads && from != none) {
+                const auto same = [&](const FramePicture::Edge& edge) {
+                    return edge.from == from && edge.to == pass && edge.resource == access.resource;
+                };
+                const auto here = picture_.edges.begin() + static_cast<std::ptrdiff_t>(first);
+                if (reads && from != none && std::none_of(here, picture_.edges.end(), same)) {
                     const bool inside = group_of_[from] != none && group_of_[from] == group_of_[pass];
                     picture_.edges.push_back({from, pass, access.resource, inside});
                 }

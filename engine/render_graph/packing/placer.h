@@ -31,7 +31,11 @@ class Placer {
         uint64_t offset;
     };
     size_t place_all(std::vector<Turn>& turns, uint64_t limit);
-    void set_priorities(uint32_t start);
+    static double class_priority(uint32_t size_class, uint32_t rank);
+    void order_by_life();
+    void order_by_end(uint32_t round);
+    void order_by_size(uint32_t round);
+    void set_priorities(uint32_t placement, uint64_t bound, size_t placed);
     void raise_priorities(uint64_t bound, size_t placed);
     bool worth_another(uint64_t best, uint64_t bound, size_t placed) const;
 

@@ -1,0 +1,23 @@
+// What can be seen of a plan without walking it: lifetimes, usages, places in memory, and what its render passes say of
+// attachments and subpasses. Like the hazard checker, it shares no table and no code with the compiler.
+#pragma once
+
+#include "engine/render_graph/compile.h"
+#include "engine/render_graph/graph.h"
+#include "engine/render_graph/plan.h"
+
+#include <string>
+#include <vector>
+
+namespace splice::test {
+
+/// Everything wrong, a sentence each. `memory`: what each resource needs where the plan placed it in a heap (empty:
+/// nothing was placed).
+std::vector<std::string> find_flaws(const graph::Graph& graph, const graph::Plan& plan,
+                                    const std::vector<graph::MemoryRequirement>& memory);
+
+/// For each resource, those that share bytes with it.
+std::vector<std::vector<uint32_t>> find_sharers(const graph::Plan& plan,
+                                                const std::vector<graph::MemoryRequirement>& memory);
+
+}  // namespace splice::test

@@ -240,7 +240,7 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_option("--view", raw.view, view_help())->option_text("VIEW");
     app.add_option(
            "--backend", raw.backend,
-           "What draws surfels: sprite (point sprites, default), tile (compute shaders) or auto (tile on software "
+           "What draws surfels: sprite (point sprites), tile (compute shaders) or auto (default: tile on software "
            "devices, else sprite). Sprites draw what tiles cannot; --stats tells")
         ->option_text("auto|sprite|tile");
     app.add_option(

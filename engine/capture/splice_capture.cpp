@@ -35,7 +35,7 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.height = command.size ? command.size->second : scene.height;
     settings.view = command.view.value_or(scene.view);
     settings.shown = command.shown.value_or(settings.shown);
-    settings.backend = command.backend.value_or(settings.backend);
+    settings.backend = command.backend.value_or(Backend::kAuto);
     settings.sides = command.sides.value_or(scene.sides);
     settings.epsilon_scale = command.epsilon_scale.value_or(scene.epsilon_scale);
     settings.prefilter = command.prefilter.value_or(scene.prefilter);

@@ -83,7 +83,8 @@ TEST_CASE("shading and samples are chosen on the command line, else by the scene
 TEST_CASE("a model becomes a picture of the size asked for, with its statistics") {
     const TemporaryFolder folder;
     write_small_model(folder / "a.splice");
-    const Outcome outcome = capture(folder, {"a.splice", "-o", "a.png", "--size", "120x80", "--stats", "a.json"});
+    const Outcome outcome =
+        capture(folder, {"a.splice", "-o", "a.png", "--size", "120x80", "--backend", "sprite", "--stats", "a.json"});
     CHECK(outcome.exit_code == 0);
     CHECK(outcome.err == "");
     const Picture picture = read_png(folder / "a.png");
@@ -105,12 +106,26 @@ TEST_CASE("a model becomes a picture of the size asked for, with its statistics"
                                              "read_back"});
 }
 
+TEST_CASE("software devices draw surfels tile by tile unless told otherwise") {
+    const TemporaryFolder folder;
+    write_small_model(folder / "a.splice");
+    const auto backend = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"a.splice", "-o", "a.png", "--device", "cpu", "--stats", "a.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        CHECK(capture(folder, arguments).exit_code == 0);
+        return nlohmann::json::parse(read_text(folder / "a.json")).at("backend").get<std::string>();
+    };
+    CHECK(backend({}) == "tile");
+    CHECK(backend({"--view", "visibility"}) == "sprite");
+    CHECK(backend({"--backend", "sprite"}) == "sprite");
+}
+
 TEST_CASE("the frame's render graph is written in the form that the file's extension names") {
     const TemporaryFolder folder;
     write_small_model(folder / "a.splice");
     const auto graph_as = [&](const std::string& name) {
-        const Outcome outcome =
-            capture(folder, {"a.splice", "-o", "a.png", "--size", "64x64", "--stats", "a.json", "--graph", name});
+        const Outcome outcome = capture(folder, {"a.splice", "-o", "a.png", "--size", "64x64", "--backend", "sprite",
+                                                 "--stats", "a.json", "--graph", name});
         CHECK(outcome.exit_code == 0);
         CHECK(outcome.err == "");
         return read_text(folder / name);

@@ -17,7 +17,7 @@ struct Effort {
 };
 constexpr Effort kEfforts[] = {{0.065, 1500, 4}, {0.08, 8000, 20}, {0.09, 160000, 60}};
 constexpr uint32_t kPlacements = 600;
-// After the first, placements come in rounds: so many by classes of sizes, then by size, then so many repairs of that.
+// After the first two, placements come in rounds: so many by classes of sizes, then by size, then so many repairs of that.
 constexpr uint32_t kByClasses = 2, kRepairs = 3, kRound = kByClasses + 1 + kRepairs;
 
 }  // namespace
@@ -66,7 +66,7 @@ void Placer::order_by_end(uint32_t round) {
     }
 }
 
-/// By size; in later rounds by size times 1 to 4, at random.
+/// By size, which mostly suffices; in later rounds by size times 1 to 4, at random.
 void Placer::order_by_size(uint32_t round) {
     std::minstd_rand random(round);
     for (Turn& turn : turns_) {
@@ -76,10 +76,11 @@ void Placer::order_by_size(uint32_t round) {
 }
 
 void Placer::set_priorities(uint32_t placement, uint64_t bound, size_t placed) {
-    if (placement == 0) return order_by_life();
-    const uint32_t round = (placement - 1) / kRound, step = (placement - 1) % kRound;
+    if (placement == 0) return order_by_size(0);
+    if (placement == 1) return order_by_life();
+    const uint32_t round = (placement - 2) / kRound, step = (placement - 2) % kRound;
     if (step < kByClasses) return order_by_end(round * kByClasses + step);
-    if (step == kByClasses) return order_by_size(round);
+    if (step == kByClasses) return order_by_size(round + 1);
     raise_priorities(bound, placed);
 }
 

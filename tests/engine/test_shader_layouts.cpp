@@ -15,7 +15,6 @@
 #include "shaders/surfel_normalise_frag.h"
 #include "shaders/surfel_visibility_frag.h"
 #include "shaders/surfel_visibility_vert.h"
-#include "shaders/tile_count_comp.h"
 #include "shaders/tile_gather_comp.h"
 #include "shaders/tile_setup_comp.h"
 #include "shaders/triangle_frag.h"

@@ -166,8 +166,7 @@ void TilePasses::add_batch(graph::Graph& graph, const FrameSettings& settings, c
     });
 }
 
-void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
-    graph::Pass pass = graph.add_pass("tile_gather", graph::PassKind::compute);
+void TilePasses::read_inputs(graph::Pass& pass, const FrameTargets& targets) const {
     pass.storage_read(handles_.records);
     pass.storage_read(handles_.blocks);
     pass.storage_read(handles_.masks);
@@ -175,6 +174,11 @@ void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const Fr
     pass.indirect_buffer(handles_.cells);
     pass.sampled(targets.depth);
     pass.sampled(targets.triangle_colour);
+}
+
+void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
+    graph::Pass pass = graph.add_pass("tile_gather", graph::PassKind::compute);
+    read_inputs(pass, targets);
     targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
     segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
     if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
@@ -187,13 +191,7 @@ void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const Fr
 void TilePasses::add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
                               std::vector<Stage> stages, Range range) {
     graph::Pass pass = graph.add_pass("tile_segments", graph::PassKind::compute);
-    pass.storage_read(handles_.records);
-    pass.storage_read(handles_.blocks);
-    pass.storage_read(handles_.masks);
-    pass.storage_read(handles_.cells);
-    pass.indirect_buffer(handles_.cells);
-    pass.sampled(targets.depth);
-    pass.sampled(targets.triangle_colour);
+    read_inputs(pass, targets);
     const bool fresh = range.first && buffers_.uniforms().segmented != 0 && stages.front() == Stage::kSegmentVisibility;
     if (fresh) {
         targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());

@@ -56,6 +56,8 @@ class TilePasses {
 
     void plan(const DrawList& draws);
     void add_batch(graph::Graph& graph, const FrameSettings& settings, const Batch& batch);
+    /// What every pass that gathers reads.
+    void read_inputs(graph::Pass& pass, const FrameTargets& targets) const;
     void add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
     void add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
                       std::vector<Stage> stages, Range range);

@@ -76,42 +76,32 @@ void DescriptorPool::reset() {
     free_sets_ = 0;
 }
 
-DescriptorWriter& DescriptorWriter::add_buffer(uint32_t binding, VkDescriptorType type,
-                                               const VkDescriptorBufferInfo& info) {
-    VkWriteDescriptorSet write{};
+VkWriteDescriptorSet& DescriptorWriter::add(uint32_t binding, VkDescriptorType type) {
+    VkWriteDescriptorSet& write = writes_.emplace_back();
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstSet = set_;
     write.dstBinding = binding;
     write.descriptorCount = 1;
     write.descriptorType = type;
-    write.pBufferInfo = &buffers_.emplace_back(info);
-    writes_.push_back(write);
+    return write;
+}
+
+DescriptorWriter& DescriptorWriter::add_buffer(uint32_t binding, VkDescriptorType type,
+                                               const VkDescriptorBufferInfo& info) {
+    add(binding, type).pBufferInfo = &buffers_.emplace_back(info);
     return *this;
 }
 
 DescriptorWriter& DescriptorWriter::add_image(uint32_t binding, VkDescriptorType type,
                                               const VkDescriptorImageInfo& info, uint32_t array_element) {
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = set_;
-    write.dstBinding = binding;
+    VkWriteDescriptorSet& write = add(binding, type);
     write.dstArrayElement = array_element;
-    write.descriptorCount = 1;
-    write.descriptorType = type;
     write.pImageInfo = &images_.emplace_back(info);
-    writes_.push_back(write);
     return *this;
 }
 
 DescriptorWriter& DescriptorWriter::add_texels(uint32_t binding, VkDescriptorType type, VkBufferView view) {
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = set_;
-    write.dstBinding = binding;
-    write.descriptorCount = 1;
-    write.descriptorType = type;
-    write.pTexelBufferView = &texels_.emplace_back(view);
-    writes_.push_back(write);
+    add(binding, type).pTexelBufferView = &texels_.emplace_back(view);
     return *this;
 }
 

@@ -72,6 +72,7 @@ class DescriptorWriter {
     DescriptorWriter& add_image(uint32_t binding, VkDescriptorType type, const VkDescriptorImageInfo& info,
                                 uint32_t array_element);
     DescriptorWriter& add_texels(uint32_t binding, VkDescriptorType type, VkBufferView view);
+    VkWriteDescriptorSet& add(uint32_t binding, VkDescriptorType type);
     DescriptorWriter& add_buffer(uint32_t binding, VkDescriptorType type, const VkDescriptorBufferInfo& info);
 
     VkDescriptorSet set_;

@@ -1,5 +1,6 @@
 #include "engine/vulkan/pipeline_statistics.h"
 
+#include "engine/vulkan/query_pool.h"
 #include "preprocess/model_format/error.h"
 
 #include <string>
@@ -19,14 +20,7 @@ static_assert(sizeof(PipelineCounts) == 4 * sizeof(uint64_t));
 PipelineStatistics::PipelineStatistics(const Device& device, uint32_t capacity)
     : device_(device.handle()), capacity_(capacity) {
     if (!device.features().pipeline_statistics) throw DeviceError("the Vulkan device has no pipeline statistics");
-    VkQueryPoolCreateInfo create{};
-    create.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    create.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-    create.queryCount = capacity;
-    create.pipelineStatistics = kCounted;
-    VkQueryPool handle = VK_NULL_HANDLE;
-    check(vkCreateQueryPool(device_, &create, nullptr, &handle), "creating a query pool");
-    pool_ = UniqueQueryPool(device_, handle);
+    pool_ = create_query_pool(device, VK_QUERY_TYPE_PIPELINE_STATISTICS, capacity, kCounted);
 }
 
 void PipelineStatistics::reset(VkCommandBuffer commands) {

@@ -1,5 +1,6 @@
 #include "engine/vulkan/timestamps.h"
 
+#include "engine/vulkan/query_pool.h"
 #include "preprocess/model_format/error.h"
 
 namespace splice::gpu {
@@ -12,13 +13,7 @@ Timestamps::Timestamps(const Device& device, uint32_t capacity)
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device.physical(), &count, families.data());
     valid_bits_ = families[device.queue_family()].timestampValidBits;
-    VkQueryPoolCreateInfo create{};
-    create.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    create.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    create.queryCount = capacity;
-    VkQueryPool handle = VK_NULL_HANDLE;
-    check(vkCreateQueryPool(device_, &create, nullptr, &handle), "creating a query pool");
-    pool_ = UniqueQueryPool(device_, handle);
+    pool_ = create_query_pool(device, VK_QUERY_TYPE_TIMESTAMP, capacity);
 }
 
 void Timestamps::reset(VkCommandBuffer commands) {

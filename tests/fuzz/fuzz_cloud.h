@@ -4,22 +4,13 @@
 
 #include "preprocess/cloud/cloud_formats.h"
 #include "preprocess/model_format/error.h"
+#include "tests/fuzz/fuzz_check.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace splice::fuzz {
-
-inline void require(bool condition, const char* what) {
-    if (condition) return;
-    std::fprintf(stderr, "violated: %s\n", what);
-    std::abort();
-}
 
 inline void check_cloud(const PointCloud& cloud) {
     const std::size_t points = cloud.offsets.size();

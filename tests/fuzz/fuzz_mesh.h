@@ -4,23 +4,14 @@
 
 #include "preprocess/mesh/mesh_formats.h"
 #include "preprocess/model_format/error.h"
+#include "tests/fuzz/fuzz_check.h"
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace splice::fuzz {
-
-inline void require(bool condition, const char* what) {
-    if (condition) return;
-    std::fprintf(stderr, "violated: %s\n", what);
-    std::abort();
-}
 
 inline void check_source(const SourceMesh& mesh) {
     const std::size_t corners = mesh.corner_position.size();

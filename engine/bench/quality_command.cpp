@@ -177,8 +177,8 @@ CaptureSettings settings_of(const QualityCommand& command) {
         throw UsageError("--size: expected WIDTHxHEIGHT in pixels, got " + command.size);
     settings.width = width;
     settings.height = height;
-    const auto backend = backend_of_name(command.backend);
-    if (!backend) throw UsageError("--backend: unknown backend " + command.backend);
+    const auto backend = find_named(kBackendNames, command.backend);
+    if (!backend) throw UsageError("--backend: expected one of " + listed(kBackendNames) + ", got " + command.backend);
     settings.backend = *backend;
     return settings;
 }
@@ -186,8 +186,8 @@ CaptureSettings settings_of(const QualityCommand& command) {
 std::vector<std::pair<Shading, std::uint32_t>> modes_of(const QualityCommand& command) {
     std::vector<std::pair<Shading, std::uint32_t>> modes;
     for (const std::string& name : command.shading) {
-        const auto shading = shading_of_name(name);
-        if (!shading) throw UsageError("--shading: expected surfel or deferred, got " + name);
+        const auto shading = find_named(kShadingNames, name);
+        if (!shading) throw UsageError("--shading: expected one of " + listed(kShadingNames) + ", got " + name);
         for (const std::uint32_t antialias : command.antialias)
             modes.emplace_back(*shading, antialias);
     }

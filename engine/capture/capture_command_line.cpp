@@ -76,25 +76,10 @@ double parse_in_range(const std::string& text, const std::string& option, double
     return value;
 }
 
-View parse_view(const std::string& text) {
-    if (const auto view = view_of_name(text)) return *view;
-    std::string list;
-    for (const ViewName& known : kViewNames)
-        list += (list.empty() ? "" : ", ") + std::string(known.name);
-    throw UsageError("--view: expected one of " + list + ", got \"" + text + "\"");
-}
-
-Backend parse_backend(const std::string& text) {
-    if (const auto backend = backend_of_name(text)) return *backend;
-    std::string list;
-    for (const BackendName& known : kBackendNames)
-        list += (list.empty() ? "" : ", ") + std::string(known.name);
-    throw UsageError("--backend: expected one of " + list + ", got \"" + text + "\"");
-}
-
-Shown parse_shown(const std::string& text) {
-    if (const auto shown = shown_of_name(text)) return *shown;
-    throw UsageError("--show: expected hybrid, triangles or surfels, got \"" + text + "\"");
+template <typename Value, std::size_t N>
+Value parse_named(const Names<Value, N>& names, const std::string& text, const std::string& option) {
+    if (const auto known = find_named(names, text)) return *known;
+    throw UsageError(option + ": expected one of " + listed(names) + ", got \"" + text + "\"");
 }
 
 Background parse_background(const std::string& text) {
@@ -118,7 +103,7 @@ bool parse_switch(const std::string& text, const std::string& option) {
 
 std::string view_help() {
     std::string help = "What to show (default shaded):";
-    for (const ViewName& known : kViewNames)
+    for (const Named<View>& known : kViewNames)
         help += "\n  " + std::string(known.name) + " - " + std::string(known.description);
     return help;
 }
@@ -146,19 +131,16 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
             throw UsageError("--orbit: expected a whole number of frames, got \"" + raw.orbit + "\"");
         command.orbit = static_cast<std::uint32_t>(frames);
     }
-    if (!raw.view.empty()) command.view = parse_view(raw.view);
-    if (!raw.backend.empty()) command.backend = parse_backend(raw.backend);
-    if (!raw.show.empty()) command.shown = parse_shown(raw.show);
+    if (!raw.view.empty()) command.view = parse_named(kViewNames, raw.view, "--view");
+    if (!raw.backend.empty()) command.backend = parse_named(kBackendNames, raw.backend, "--backend");
+    if (!raw.show.empty()) command.shown = parse_named(kShownNames, raw.show, "--show");
     if (!raw.height.empty())
         command.orthographic_height = parse_in_range(raw.height, "--height", 1e-30, 1e30, " world units");
     if (!raw.background.empty()) command.background = parse_background(raw.background);
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
     if (!raw.prefilter.empty()) command.prefilter = parse_switch(raw.prefilter, "--prefilter");
-    if (!raw.shading.empty()) {
-        command.shading = shading_of_name(raw.shading);
-        if (!command.shading) throw UsageError("--shading: expected surfel or deferred, got \"" + raw.shading + "\"");
-    }
+    if (!raw.shading.empty()) command.shading = parse_named(kShadingNames, raw.shading, "--shading");
     if (!raw.antialias.empty()) {
         const double side = parse_in_range(raw.antialias, "--antialias", 1, kMostSamplesPerSide, "");
         if (side != std::floor(side))

@@ -1,10 +1,9 @@
 // How splats reach the accumulation: sets of passes that fill the same target and are held to the same pictures.
 #pragma once
 
-#include <array>
+#include "engine/scene/named.h"
+
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 namespace splice {
 
@@ -14,22 +13,11 @@ enum class Backend : std::uint32_t {
     kTile,    // compute: splats listed by screen tile, both surfel passes gathered in one go
 };
 
-struct BackendName {
-    Backend backend;
-    std::string_view name;
-};
-
-inline constexpr std::array<BackendName, 3> kBackendNames{
+inline constexpr Names<Backend, 3> kBackendNames{
     {{Backend::kAuto, "auto"}, {Backend::kSprite, "sprite"}, {Backend::kTile, "tile"}}};
 
 constexpr std::string_view name_of(Backend backend) {
-    return kBackendNames[static_cast<std::size_t>(backend)].name;
-}
-
-constexpr std::optional<Backend> backend_of_name(std::string_view name) {
-    for (const BackendName& known : kBackendNames)
-        if (known.name == name) return known.backend;
-    return std::nullopt;
+    return name_in(kBackendNames, backend);
 }
 
 }  // namespace splice

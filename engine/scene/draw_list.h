@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/scene/camera.h"
+#include "engine/scene/named.h"
 #include "engine/scene/scene.h"
 
 #include <glm/glm.hpp>
@@ -42,6 +43,13 @@ struct DrawList {
 };
 
 enum class Sides { kAsBaked, kOneSided, kTwoSided };
+
+inline constexpr Names<Sides, 3> kSidesNames{
+    {{Sides::kAsBaked, "as-baked"}, {Sides::kOneSided, "one-sided"}, {Sides::kTwoSided, "two-sided"}}};
+
+constexpr std::string_view name_of(Sides sides) {
+    return name_in(kSidesNames, sides);
+}
 
 struct DrawListOptions {
     Sides sides = Sides::kAsBaked;

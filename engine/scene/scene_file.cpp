@@ -42,15 +42,10 @@ glm::dvec3 direction(const JsonValue& value) {
     return v;
 }
 
-template <typename T, std::size_t count>
-T choice(const JsonValue& value, const std::array<std::pair<std::string_view, T>, count>& names) {
-    const std::string text = value.is_string() ? value.string() : "";
-    std::string list;
-    for (const auto& [name, meaning] : names) {
-        if (name == text) return meaning;
-        list += (list.empty() ? "\"" : ", \"") + std::string(name) + "\"";
-    }
-    value.fail("one of " + list);
+template <typename Value, std::size_t N>
+Value choice(const JsonValue& value, const Names<Value, N>& names) {
+    if (const auto known = find_named(names, value.is_string() ? value.string() : "")) return *known;
+    value.fail("one of " + listed(names, "\""));
 }
 
 Transform read_transform(const JsonValue& value) {
@@ -94,10 +89,10 @@ SceneModel read_model(const JsonValue& value, const std::filesystem::path& folde
     if (const auto transform = value.member("transform")) model.transform = read_transform(*transform);
     if (const auto unit_box = value.member("unit_box")) model.unit_box = unit_box->boolean();
     if (const auto representation = value.member("representation"))
-        model.representation = choice(*representation, std::array<std::pair<std::string_view, SceneRepresentation>, 3>{
-                                                           {{"hybrid", SceneRepresentation::kHybrid},
-                                                            {"triangles", SceneRepresentation::kTriangles},
-                                                            {"surfels", SceneRepresentation::kSurfels}}});
+        model.representation =
+            choice(*representation, Names<SceneRepresentation, 3>{{{SceneRepresentation::kHybrid, "hybrid"},
+                                                                   {SceneRepresentation::kTriangles, "triangles"},
+                                                                   {SceneRepresentation::kSurfels, "surfels"}}});
     if (const auto share = value.member("triangle_share"))
         model.triangle_share = share->number(0, 1, "a number from 0 to 1");
     if (const auto spacing = value.member("max_spacing"))
@@ -162,12 +157,11 @@ std::vector<CameraBookmark> read_bookmarks(const JsonValue& value) {
 Light read_light(const JsonValue& value) {
     value.expect_members({"type", "space", "direction", "position", "range", "colour", "intensity"});
     Light light;
-    light.kind =
-        choice(value.required("type"), std::array<std::pair<std::string_view, LightKind>, 2>{
-                                           {{"directional", LightKind::kDirectional}, {"point", LightKind::kPoint}}});
+    light.kind = choice(value.required("type"),
+                        Names<LightKind, 2>{{{LightKind::kDirectional, "directional"}, {LightKind::kPoint, "point"}}});
     if (const auto space = value.member("space"))
-        light.space = choice(*space, std::array<std::pair<std::string_view, LightSpace>, 2>{
-                                         {{"world", LightSpace::kWorld}, {"camera", LightSpace::kCamera}}});
+        light.space =
+            choice(*space, Names<LightSpace, 2>{{{LightSpace::kWorld, "world"}, {LightSpace::kCamera, "camera"}}});
     if (light.kind == LightKind::kDirectional) {
         for (const char* name : {"position", "range"})
             if (const auto extra = value.member(name)) extra->fail("nothing: the light is directional");
@@ -192,9 +186,8 @@ Lighting read_lighting(const JsonValue& value) {
     if (const auto shininess = value.member("shininess"))
         lighting.shininess = shininess->number(1, 1e6, "a number from 1 to 1000000");
     if (const auto highlight = value.member("highlight"))
-        lighting.highlight =
-            choice(*highlight, std::array<std::pair<std::string_view, HighlightModel>, 2>{
-                                   {{"blinn-phong", HighlightModel::kBlinnPhong}, {"phong", HighlightModel::kPhong}}});
+        lighting.highlight = choice(*highlight, Names<HighlightModel, 2>{{{HighlightModel::kBlinnPhong, "blinn-phong"},
+                                                                          {HighlightModel::kPhong, "phong"}}});
     if (const auto rim = value.member("rim")) lighting.rim = rim->number(0, kLargest, "a number that is not negative");
     if (const auto exponent = value.member("rim_exponent"))
         lighting.rim_exponent = exponent->number(1, 1e6, "a number from 1 to 1000000");
@@ -227,21 +220,15 @@ void read_render(const JsonValue& value, SceneDescription& scene) {
         scene.height = size->element(1).whole_number(1, kLargestSide);
     }
     if (const auto view = value.member("view")) {
-        const auto known = view_of_name(view->is_string() ? view->string() : "");
+        const auto known = find_named(kViewNames, view->is_string() ? view->string() : "");
         if (!known) view->fail("the name of a view, such as \"shaded\"");
         scene.view = *known;
     }
-    if (const auto sides = value.member("sides"))
-        scene.sides = choice(
-            *sides,
-            std::array<std::pair<std::string_view, Sides>, 3>{
-                {{"as-baked", Sides::kAsBaked}, {"one-sided", Sides::kOneSided}, {"two-sided", Sides::kTwoSided}}});
+    if (const auto sides = value.member("sides")) scene.sides = choice(*sides, kSidesNames);
     if (const auto epsilon = value.member("epsilon_scale"))
         scene.epsilon_scale = epsilon->number(0, 100, "a number from 0 to 100");
     if (const auto prefilter = value.member("prefilter")) scene.prefilter = prefilter->boolean();
-    if (const auto shading = value.member("shading"))
-        scene.shading = choice(*shading, std::array<std::pair<std::string_view, Shading>, 2>{
-                                             {{"surfel", Shading::kSurfel}, {"deferred", Shading::kDeferred}}});
+    if (const auto shading = value.member("shading")) scene.shading = choice(*shading, kShadingNames);
     if (const auto antialias = value.member("antialias"))
         scene.antialias = antialias->whole_number(1, kMostSamplesPerSide);
 }

@@ -1,10 +1,9 @@
 // Where light is computed.
 #pragma once
 
-#include <array>
+#include "engine/scene/named.h"
+
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 namespace splice {
 
@@ -13,22 +12,10 @@ enum class Shading : std::uint32_t {
     kDeferred,  // at pixels: normals and albedos are blended, then lit once (Botsch et al. 2005)
 };
 
-struct ShadingName {
-    Shading shading;
-    std::string_view name;
-};
-
-inline constexpr std::array<ShadingName, 2> kShadingNames{
-    {{Shading::kSurfel, "surfel"}, {Shading::kDeferred, "deferred"}}};
+inline constexpr Names<Shading, 2> kShadingNames{{{Shading::kSurfel, "surfel"}, {Shading::kDeferred, "deferred"}}};
 
 constexpr std::string_view name_of(Shading shading) {
-    return kShadingNames[static_cast<std::size_t>(shading)].name;
-}
-
-constexpr std::optional<Shading> shading_of_name(std::string_view name) {
-    for (const ShadingName& known : kShadingNames)
-        if (known.name == name) return known.shading;
-    return std::nullopt;
+    return name_in(kShadingNames, shading);
 }
 
 }  // namespace splice

@@ -1,10 +1,9 @@
 // Which representation of a model is drawn, whatever its bake chose.
 #pragma once
 
-#include <array>
+#include "engine/scene/named.h"
+
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 namespace splice {
 
@@ -14,24 +13,12 @@ enum class Shown : std::uint32_t {
     kSurfels,    // surfel patches alone
 };
 
-struct ShownName {
-    Shown shown;
-    std::string_view name;
-    std::string_view description;
-};
-
-inline constexpr std::array<ShownName, 3> kShownNames{{{Shown::kHybrid, "hybrid", "as baked"},
-                                                       {Shown::kTriangles, "triangles", "every patch by its triangles"},
-                                                       {Shown::kSurfels, "surfels", "surfel patches alone"}}};
+inline constexpr Names<Shown, 3> kShownNames{{{Shown::kHybrid, "hybrid", "as baked"},
+                                              {Shown::kTriangles, "triangles", "every patch by its triangles"},
+                                              {Shown::kSurfels, "surfels", "surfel patches alone"}}};
 
 constexpr std::string_view name_of(Shown shown) {
-    return kShownNames[static_cast<std::size_t>(shown)].name;
-}
-
-constexpr std::optional<Shown> shown_of_name(std::string_view name) {
-    for (const ShownName& known : kShownNames)
-        if (known.name == name) return known.shown;
-    return std::nullopt;
+    return name_in(kShownNames, shown);
 }
 
 }  // namespace splice

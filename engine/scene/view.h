@@ -1,10 +1,9 @@
 // What a frame is to show: the picture itself, or one of the thesis's explanatory pictures (figures 4.1 to 4.15).
 #pragma once
 
-#include <array>
+#include "engine/scene/named.h"
+
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 namespace splice {
 
@@ -24,13 +23,7 @@ enum class View : std::uint32_t {
     kSurfelsOnly = 11,    // (4.11 d)
 };
 
-struct ViewName {
-    View view;
-    std::string_view name;
-    std::string_view description;
-};
-
-inline constexpr std::array<ViewName, 12> kViewNames{{
+inline constexpr Names<View, 12> kViewNames{{
     {View::kShaded, "shaded", "the picture"},
     {View::kDepth, "depth", "distance to the surface, near is bright"},
     {View::kVisibility, "visibility", "depth buffer after the visibility pass, moved back by epsilon"},
@@ -45,10 +38,8 @@ inline constexpr std::array<ViewName, 12> kViewNames{{
     {View::kSurfelsOnly, "surfels-only", "surfel patches alone"},
 }};
 
-constexpr std::optional<View> view_of_name(std::string_view name) {
-    for (const ViewName& known : kViewNames)
-        if (known.name == name) return known.view;
-    return std::nullopt;
+constexpr std::string_view name_of(View view) {
+    return name_in(kViewNames, view);
 }
 
 }  // namespace splice

@@ -122,13 +122,9 @@ std::string write_scene(const SceneDescription& scene, const std::filesystem::pa
     json["camera"] = scene.camera ? json_of(*scene.camera) : json_of(scene.framing);
     json["lighting"] = json_of(scene.lighting);
     json["background"] = text_of(scene.background);
-    constexpr const char* sides[] = {"as-baked", "one-sided", "two-sided"};
-    json["render"] = {{"size", {scene.width, scene.height}},
-                      {"view", kViewNames[static_cast<std::size_t>(scene.view)].name},
-                      {"sides", sides[static_cast<int>(scene.sides)]},
-                      {"epsilon_scale", scene.epsilon_scale},
-                      {"prefilter", scene.prefilter},
-                      {"shading", name_of(scene.shading)},
+    json["render"] = {{"size", {scene.width, scene.height}}, {"view", name_of(scene.view)},
+                      {"sides", name_of(scene.sides)},       {"epsilon_scale", scene.epsilon_scale},
+                      {"prefilter", scene.prefilter},        {"shading", name_of(scene.shading)},
                       {"antialias", scene.antialias}};
     for (const CameraBookmark& bookmark : scene.bookmarks)
         json["bookmarks"].push_back({{"name", bookmark.name}, {"camera", json_of(bookmark.camera)}});

@@ -47,7 +47,7 @@ std::string capture_line(const std::filesystem::path& input, const CaptureSettin
     } else {
         line += " --fov " + exact(camera.fov_y_degrees);
     }
-    line += " --view " + std::string(kViewNames[static_cast<std::size_t>(settings.view)].name);
+    line += " --view " + std::string(name_of(settings.view));
     line += " --backend " + std::string(name_of(settings.backend));
     line += " --shading " + std::string(name_of(settings.shading));
     line += " --antialias " + std::to_string(settings.antialias);

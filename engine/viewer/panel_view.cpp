@@ -13,28 +13,17 @@ namespace splice {
 namespace {
 
 // A list of a table of names; the lists are those of the programs' options.
-template <typename Table, typename Value, typename Member>
-void choose(const char* label, const Table& table, Value& value, Member member) {
-    const auto current =
-        std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.*member == value; });
-    const std::string shown(current == table.end() ? "" : current->name);
+template <typename Value, std::size_t N>
+void choose(const char* label, const Names<Value, N>& names, Value& value) {
+    const std::string shown(name_in(names, value));
     if (!ImGui::BeginCombo(label, shown.c_str(), ImGuiComboFlags_HeightLarge)) return;
-    for (const auto& row : table) {
-        const std::string name(row.name);
-        if (ImGui::Selectable(name.c_str(), row.*member == value)) value = row.*member;
-        if constexpr (requires { row.description; }) {
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.description).c_str());
-        }
+    for (const Named<Value>& known : names) {
+        const std::string name(known.name), description(known.description);
+        if (ImGui::Selectable(name.c_str(), known.value == value)) value = known.value;
+        if (!description.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", description.c_str());
     }
     ImGui::EndCombo();
 }
-
-struct SidesName {
-    Sides sides;
-    const char* name;
-};
-constexpr std::array<SidesName, 3> kSidesNames{
-    {{Sides::kAsBaked, "as baked"}, {Sides::kOneSided, "one-sided"}, {Sides::kTwoSided, "two-sided"}}};
 
 bool edit_colour(const char* label, glm::dvec3& colour, ImGuiColorEditFlags flags) {
     glm::vec3 shown(colour);
@@ -85,7 +74,7 @@ bool edit_light(Light& light) {
 
 void draw_view_section(PanelContext& context) {
     ViewerState& state = context.state;
-    choose("Compare", kComparisonNames, state.comparison, &ComparisonName::comparison);
+    choose("Compare", kComparisonNames, state.comparison);
     if (state.comparison == Comparison::kOff) {
         state.edited_look = 0;
     } else {
@@ -96,11 +85,11 @@ void draw_view_section(PanelContext& context) {
         state.edited_look = static_cast<std::size_t>(edited);
     }
     CaptureSettings& look = state.looks[state.edited_look];
-    choose("View", kViewNames, look.view, &ViewName::view);
-    choose("Show", kShownNames, look.shown, &ShownName::shown);
-    choose("Backend", kBackendNames, look.backend, &BackendName::backend);
-    choose("Shading", kShadingNames, look.shading, &ShadingName::shading);
-    choose("Sides", kSidesNames, look.sides, &SidesName::sides);
+    choose("View", kViewNames, look.view);
+    choose("Show", kShownNames, look.shown);
+    choose("Backend", kBackendNames, look.backend);
+    choose("Shading", kShadingNames, look.shading);
+    choose("Sides", kSidesNames, look.sides);
     edit_number("Epsilon", look.epsilon_scale, 0, 4);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("How far surfels may lie behind one another and still blend");
     ImGui::Checkbox("Prefilter", &look.prefilter);

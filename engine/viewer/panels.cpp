@@ -57,7 +57,7 @@ void label(ImDrawList& list, float x, float y, const std::string& text, bool to_
 }
 
 std::string caption(const CaptureSettings& look) {
-    std::string text(kViewNames[static_cast<std::size_t>(look.view)].name);
+    std::string text(name_of(look.view));
     if (look.shown != Shown::kHybrid) text += ", " + std::string(name_of(look.shown));
     return text;
 }

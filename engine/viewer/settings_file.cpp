@@ -90,7 +90,7 @@ void apply_settings(const ViewerSettings& settings, ViewerState& state) {
     state.reduce_while_moving = settings.reduce_while_moving;
     for (CaptureSettings& look : state.looks) {
         look.prefilter = settings.prefilter;
-        look.backend = backend_of_name(settings.backend).value_or(Backend::kAuto);
+        look.backend = find_named(kBackendNames, settings.backend).value_or(Backend::kAuto);
     }
     state.present_mode = gpu::present_mode_of_name(settings.present_mode).value_or(gpu::PresentMode::fifo);
 }

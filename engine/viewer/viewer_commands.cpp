@@ -18,19 +18,10 @@ namespace splice {
 
 namespace {
 
-template <typename Table>
-std::string names_of(const Table& table) {
-    std::string list;
-    for (const auto& row : table)
-        list += (list.empty() ? "" : ", ") + std::string(row.name);
-    return list;
-}
-
-template <typename Table>
-const auto& named(const Table& table, const std::string& name, const char* what) {
-    for (const auto& row : table)
-        if (row.name == name) return row;
-    throw UsageError(std::string(what) + ": expected one of " + names_of(table) + ", got \"" + name + "\"");
+template <typename Value, std::size_t N>
+Value named(const Names<Value, N>& names, const std::string& name, const std::string& what) {
+    if (const auto known = find_named(names, name)) return *known;
+    throw UsageError(what + ": expected one of " + listed(names) + ", got \"" + name + "\"");
 }
 
 bool on_or_off(const std::string& what, const std::string& value) {
@@ -38,20 +29,9 @@ bool on_or_off(const std::string& what, const std::string& value) {
     throw UsageError(what + ": expected on or off, got \"" + value + "\"");
 }
 
-struct NamedSides {
-    Sides sides;
-    std::string_view name;
-};
-constexpr std::array<NamedSides, 3> kSides{
-    {{Sides::kAsBaked, "as-baked"}, {Sides::kOneSided, "one-sided"}, {Sides::kTwoSided, "two-sided"}}};
-
-struct NamedBake {
-    ForcedRepresentation representation;
-    std::string_view name;
-};
-constexpr std::array<NamedBake, 3> kBakes{{{ForcedRepresentation::kHybrid, "hybrid"},
-                                           {ForcedRepresentation::kTriangles, "triangles"},
-                                           {ForcedRepresentation::kSurfels, "surfels"}}};
+constexpr Names<ForcedRepresentation, 3> kBakes{{{ForcedRepresentation::kHybrid, "hybrid"},
+                                                 {ForcedRepresentation::kTriangles, "triangles"},
+                                                 {ForcedRepresentation::kSurfels, "surfels"}}};
 
 }  // namespace
 
@@ -149,18 +129,18 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
         return parsed;
     };
     const std::map<std::string, std::function<void()>> settings{
-        {"view", [&] { look.view = named(kViewNames, value, "set view").view; }},
-        {"show", [&] { look.shown = named(kShownNames, value, "set show").shown; }},
-        {"backend", [&] { look.backend = named(kBackendNames, value, "set backend").backend; }},
-        {"shading", [&] { look.shading = named(kShadingNames, value, "set shading").shading; }},
-        {"sides", [&] { look.sides = named(kSides, value, "set sides").sides; }},
+        {"view", [&] { look.view = named(kViewNames, value, "set view"); }},
+        {"show", [&] { look.shown = named(kShownNames, value, "set show"); }},
+        {"backend", [&] { look.backend = named(kBackendNames, value, "set backend"); }},
+        {"shading", [&] { look.shading = named(kShadingNames, value, "set shading"); }},
+        {"sides", [&] { look.sides = named(kSidesNames, value, "set sides"); }},
         {"epsilon", [&] { look.epsilon_scale = number(0, 100); }},
         {"prefilter", [&] { look.prefilter = on_or_off("set prefilter", value); }},
         {"edited", [&] { state_.edited_look = value == "right" && pictures() == 2 ? 1 : 0; }},
         {"wipe", [&] { state_.wipe = number(0, 1); }},
         {"coarser", [&] { state_.reduce_while_moving = on_or_off("set coarser", value); }},
         {"graph", [&] { state_.graph_window = on_or_off("set graph", value); }},
-        {"bake", [&] { state_.bake.cluster.representation = named(kBakes, value, "set bake").representation; }},
+        {"bake", [&] { state_.bake.cluster.representation = named(kBakes, value, "set bake"); }},
         {"triangle-share", [&] { state_.bake.cluster.triangle_share = number(0, 1); }},
         {"spacing",
          [&] {
@@ -205,10 +185,10 @@ void Viewer::run_command(const Command& command) {
              View& view = state_.looks[state_.edited_look].view;
              const std::size_t count = kViewNames.size();
              const std::size_t step = command.number(0) < 0 ? count - 1 : 1;
-             view = kViewNames[(static_cast<std::size_t>(view) + step) % count].view;
+             view = kViewNames[(static_cast<std::size_t>(view) + step) % count].value;
          }},
         {"set", [&] { set_value(arguments[0], arguments[1]); }},
-        {"compare", [&] { state_.comparison = named(kComparisonNames, arguments[0], "compare").comparison; }},
+        {"compare", [&] { state_.comparison = named(kComparisonNames, arguments[0], "compare"); }},
         {"panels", [&] { state_.panels = on_or_off("panels", arguments[0]); }},
         {"rebake",
          [&] {

@@ -3,6 +3,7 @@
 
 #include "engine/capture/capture.h"
 #include "engine/capture/load_scene.h"
+#include "engine/scene/named.h"
 #include "engine/viewer/camera_controller.h"
 #include "engine/viewer/navigation.h"
 #include "engine/viewer/pass_history.h"
@@ -22,11 +23,7 @@
 namespace splice {
 
 enum class Comparison { kOff, kSideBySide, kWipe };
-struct ComparisonName {
-    Comparison comparison;
-    std::string_view name;
-};
-inline constexpr std::array<ComparisonName, 3> kComparisonNames{
+inline constexpr Names<Comparison, 3> kComparisonNames{
     {{Comparison::kOff, "off"}, {Comparison::kSideBySide, "side-by-side"}, {Comparison::kWipe, "wipe"}}};
 
 /// A scene in memory and on the device.

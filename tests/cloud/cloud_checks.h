@@ -4,6 +4,7 @@
 #include "preprocess/cloud/cloud_formats.h"
 #include "preprocess/cloud/read_point_cloud.h"
 #include "preprocess/model_format/error.h"
+#include "tests/support/input_error.h"
 #include "tests/support/test_files.h"
 
 #include <catch2/catch.hpp>
@@ -37,17 +38,6 @@ void append(std::string& bytes, T value) {
 template <class T>
 void overwrite(std::string& bytes, std::size_t at, T value) {
     bytes.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <class Action>
-std::string cloud_error(Action action) {
-    try {
-        action();
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    FAIL("no InputError was thrown");
-    return {};
 }
 
 }  // namespace splice::test

@@ -50,10 +50,10 @@ TEST_CASE("gzipped point clouds are read as what is inside") {
 
 TEST_CASE("a cloud without a usable point is refused") {
     const auto error_of = [](const std::string& bytes) {
-        return cloud_error([&] { parse_point_cloud({"scan", bytes, ".xyz", {}}); });
+        return input_error([&] { parse_point_cloud({"scan", bytes, ".xyz", {}}); });
     };
     CHECK_THAT(error_of("nan 0 0\n"), Catch::Contains("none of its 1 points"));
-    CHECK_THAT(cloud_error([] {
+    CHECK_THAT(input_error([] {
                    parse_point_cloud({"scan", "FIELDS x y z\nPOINTS 0\nDATA ascii\n", ".pcd", {}});
                }),
                Catch::Contains("has no points"));

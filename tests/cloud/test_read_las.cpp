@@ -56,7 +56,7 @@ TEST_CASE("LAS: what cannot be read says why") {
     const auto error_of = [&](std::size_t at, auto value) {
         std::string bytes = good;
         overwrite(bytes, at, value);
-        return cloud_error([&] { parse_las(bytes, "scan"); });
+        return input_error([&] { parse_las(bytes, "scan"); });
     };
     CHECK_THAT(error_of(kPointFormat, std::uint8_t{0x83}), Catch::Contains("LAZ") && Catch::Contains("uncompress"));
     CHECK_THAT(error_of(kPointFormat, std::uint8_t{11}), Catch::Contains("point format 11"));
@@ -68,7 +68,7 @@ TEST_CASE("LAS: what cannot be read says why") {
     CHECK_THAT(error_of(kScales, 0.0), Catch::Contains("scale"));
     CHECK_THAT(error_of(kScales + 24, std::numeric_limits<double>::quiet_NaN()), Catch::Contains("offset"));
     for (std::size_t size = 0; size < good.size(); size += 13)
-        CHECK_THAT(cloud_error([&] { parse_las(good.substr(0, size), "scan"); }), Catch::StartsWith("scan: "));
+        CHECK_THAT(input_error([&] { parse_las(good.substr(0, size), "scan"); }), Catch::StartsWith("scan: "));
 }
 
 TEST_CASE("LAS: a lidar tile keeps its millimetres") {

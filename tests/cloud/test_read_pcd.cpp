@@ -41,7 +41,7 @@ TEST_CASE("LZF: copies may overlap what they write; damage is found") {
 }
 
 TEST_CASE("PCD: what cannot be read says why") {
-    const auto error_of = [](const std::string& bytes) { return cloud_error([&] { parse_pcd(bytes, "scan"); }); };
+    const auto error_of = [](const std::string& bytes) { return input_error([&] { parse_pcd(bytes, "scan"); }); };
     CHECK_THAT(error_of(seed("pcd/too_many.pcd")), Catch::Contains("4294967295 points of 12 bytes promised"));
     CHECK_THAT(error_of(seed("pcd/bomb.pcd")), Catch::Contains("damaged"));
     CHECK_THAT(error_of(seed("pcd/no_data.pcd")), Catch::Contains("no \"DATA\""));

@@ -23,7 +23,7 @@ TEST_CASE("PLY points: ascii, both binary orders, and lists among the properties
 }
 
 TEST_CASE("PLY points: what cannot be read says why") {
-    const auto error_of = [](const std::string& bytes) { return cloud_error([&] { parse_ply_cloud(bytes, "scan"); }); };
+    const auto error_of = [](const std::string& bytes) { return input_error([&] { parse_ply_cloud(bytes, "scan"); }); };
     CHECK_THAT(error_of(seed("ply_cloud/cut.ply")), Catch::Contains("only 20 bytes follow"));
     // Each element alone would fit.
     CHECK_THAT(

@@ -62,7 +62,7 @@ TEST_CASE("text: points that are not finite or too far are dropped and counted")
 }
 
 TEST_CASE("text: a line that has no point is refused by its number") {
-    const auto error_of = [](const std::string& bytes) { return cloud_error([&] { text(bytes); }); };
+    const auto error_of = [](const std::string& bytes) { return input_error([&] { text(bytes); }); };
     CHECK_THAT(error_of("# c\n0 0 0 1 1 1\n1 2\n"), Catch::Contains("scan: line 3: expected 6 numbers, found \"1 2\""));
     CHECK_THAT(error_of("0 0 0\n1 x 0\n"), Catch::Contains("line 2"));
     CHECK_THAT(error_of("heading\n"), Catch::Contains("no line with the three coordinates"));
@@ -81,5 +81,5 @@ TEST_CASE("text: long files are read in pieces, the same for any number of threa
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     CHECK(text(bytes).offsets == cloud.offsets);
     bytes += "oops\n";
-    CHECK_THAT(cloud_error([&] { text(bytes); }), Catch::Contains("line 300001"));
+    CHECK_THAT(input_error([&] { text(bytes); }), Catch::Contains("line 300001"));
 }

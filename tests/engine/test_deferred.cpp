@@ -100,10 +100,10 @@ TEST_CASE("views that show no light are the same in either shading") {
     HandmadeModel model;
     model.add_surfels(sheet({-0.8f, -0.8f, 0}, {1.6f, 0, 0.3f}, {0, 1.6f, 0.2f}, 20, kGreen));
     const Scene scene = scene_of(renderer.load(view_of(model.model())));
-    for (const ViewName& known : kViewNames) {
+    for (const Named<View>& known : kViewNames) {
         CAPTURE(known.name);
         CaptureSettings settings = facing(3, Shading::kDeferred);
-        settings.view = known.view;
+        settings.view = known.value;
         const Frame deferred = renderer.render(scene, settings);
         settings.shading = Shading::kSurfel;
         CHECK(worst_difference(deferred, renderer.render(scene, settings)) <= 1);

@@ -367,10 +367,10 @@ TEST_CASE("every view is drawn and the validation layers have nothing to say") {
     model.add_triangles(quad({-1, -1, -0.2f}, {1, 0, 0}, {0, 2, 0}), material);
     const Scene scene = scene_with(renderer, model, true);
     std::vector<std::vector<std::uint8_t>> pictures;
-    for (const ViewName& known : kViewNames) {
+    for (const Named<View>& known : kViewNames) {
         CAPTURE(known.name);
         CaptureSettings settings = small_picture();
-        settings.view = known.view;
+        settings.view = known.value;
         settings.want_overlap = true;
         const Frame frame = renderer.render(scene, settings);
         CHECK(frame.stats.covered_pixels > 500);
@@ -398,9 +398,9 @@ TEST_CASE("an empty scene is a background") {
     Renderer renderer({});
     Scene scene;
     scene.background.colour = glm::dvec3(0, 0, 1);
-    for (const ViewName& known : kViewNames) {
+    for (const Named<View>& known : kViewNames) {
         CaptureSettings settings = small_picture();
-        settings.view = known.view;
+        settings.view = known.value;
         const Frame frame = renderer.render(scene, settings);
         CHECK(frame.stats.covered_pixels == 0);
         CHECK(pixel_at(frame, 10, 10) == Pixel{0, 0, 255, 255});

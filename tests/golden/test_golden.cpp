@@ -60,8 +60,8 @@ TEST_CASE("each view looks as it did") {
     CaptureSettings settings;
     settings.width = settings.height = 160;
     settings.camera = frame_camera(scene.bounds(), {}, settings.width, settings.height);
-    for (const ViewName& known : kViewNames) {
-        settings.view = known.view;
+    for (const Named<View>& known : kViewNames) {
+        settings.view = known.value;
         Frame frame = renderer.render(scene, settings);
         CHECK(compare_with_golden("view-" + std::string(known.name),
                                   {frame.width, frame.height, std::move(frame.rgba)}) == kClean);

@@ -3,6 +3,7 @@
 
 #include "preprocess/mesh/mesh_formats.h"
 #include "preprocess/model_format/error.h"
+#include "tests/support/input_error.h"
 
 #include <catch2/catch.hpp>
 
@@ -22,18 +23,6 @@ inline std::vector<std::uint32_t> polygon(const SourceMesh& mesh, std::size_t p)
 }
 
 using Indices = std::vector<std::uint32_t>;
-
-/// The message of the InputError that `action` throws; fails the test if it throws none.
-template <class Action>
-std::string input_error(Action action) {
-    try {
-        action();
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    FAIL("no InputError was thrown");
-    return {};
-}
 
 inline IndexedMesh repaired(SourceMesh source, RepairReport* report = nullptr) {
     RepairReport local;

@@ -30,8 +30,6 @@ class Walker {
     }
 
     std::vector<std::string> walk() {
-        check_order();
-        if (!problems_.empty()) return problems_;
         for (const graph::Group& group : plan_.groups) {
             if (group.render_pass == none) continue;
             if (plan_.render_passes[group.render_pass].subpasses.count != group.passes.count)
@@ -73,36 +71,6 @@ class Walker {
             }
         }
         final_makers_ = last;
-    }
-
-    void check_order() {
-        const auto& passes = graph_.declaration().passes;
-        std::vector<int> seen(passes.size(), 0);
-        uint32_t side_effect = 0;
-        for (const uint32_t pass : plan_.order) {
-            ++seen[pass];
-            if (!passes[pass].side_effect) continue;
-            if (pass < side_effect) problems_.push_back("side effects out of order");
-            side_effect = pass;
-        }
-        for (const graph::CulledPass& culled : plan_.culled)
-            --seen[culled.pass];
-        for (uint32_t pass = 0; pass < passes.size(); ++pass) {
-            const bool culled = std::any_of(plan_.culled.begin(), plan_.culled.end(),
-                                            [&](const graph::CulledPass& c) { return c.pass == pass; });
-            if (seen[pass] != (culled ? -1 : 1)) {
-                problems_.push_back("pass '" + graph_.pass_name(pass) + "' is not exactly once in the order or culled");
-            }
-            if (culled && passes[pass].side_effect) {
-                problems_.push_back("pass '" + graph_.pass_name(pass) + "' has a side effect and was culled");
-            }
-        }
-        size_t next = 0;
-        for (const graph::Group& group : plan_.groups) {
-            if (group.passes.first != next) problems_.push_back("groups do not tile the order");
-            next = size_t{group.passes.first} + group.passes.count;
-        }
-        if (next != plan_.order.size()) problems_.push_back("groups do not tile the order");
     }
 
     void walk_frame() {
@@ -508,7 +476,8 @@ class Walker {
 std::vector<std::string> find_hazards(const graph::Graph& graph, const graph::Plan& plan,
                                       const std::vector<graph::MemoryRequirement>& memory) {
     std::vector<std::string> problems = find_flaws(graph, plan, memory);
-    const std::vector<std::string> hazards = Walker(graph, plan, memory).walk();
+    std::vector<std::string> hazards = find_disorder(graph, plan);
+    if (hazards.empty()) hazards = Walker(graph, plan, memory).walk();  // which follows the order
     problems.insert(problems.end(), hazards.begin(), hazards.end());
     return problems;
 }

@@ -236,6 +236,36 @@ std::vector<std::string> find_flaws(const graph::Graph& graph, const graph::Plan
     return PlanChecker(graph, plan, memory).check();
 }
 
+std::vector<std::string> find_disorder(const graph::Graph& graph, const graph::Plan& plan) {
+    std::vector<std::string> problems;
+    const auto& passes = graph.declaration().passes;
+    const auto report = [&](uint32_t pass, const char* problem) {
+        problems.push_back("pass '" + graph.pass_name(pass) + "' " + problem);
+    };
+    std::vector<int> seen(passes.size(), 0), culled(passes.size(), 0);
+    uint32_t side_effect = 0;
+    for (const uint32_t pass : plan.order) {
+        ++seen[pass];
+        if (!passes[pass].side_effect) continue;
+        if (pass < side_effect) problems.emplace_back("side effects out of order");
+        side_effect = pass;
+    }
+    for (const graph::CulledPass& each : plan.culled)
+        ++culled[each.pass];
+    for (uint32_t pass = 0; pass < passes.size(); ++pass) {
+        if (seen[pass] + culled[pass] != 1) report(pass, "is not exactly once in the order or culled");
+        if (culled[pass] != 0 && passes[pass].side_effect) report(pass, "has a side effect and was culled");
+    }
+    size_t next = 0;
+    bool tiled = true;
+    for (const graph::Group& group : plan.groups) {
+        tiled = tiled && group.passes.first == next;
+        next = size_t{group.passes.first} + group.passes.count;
+    }
+    if (!tiled || next != plan.order.size()) problems.emplace_back("groups do not tile the order");
+    return problems;
+}
+
 std::vector<std::vector<uint32_t>> find_sharers(const graph::Plan& plan,
                                                 const std::vector<graph::MemoryRequirement>& memory) {
     std::vector<std::vector<uint32_t>> sharers(plan.resources.size());

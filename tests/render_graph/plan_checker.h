@@ -1,5 +1,5 @@
-// What can be seen of a plan without walking it: lifetimes, usages, places in memory, and what its render passes say of
-// attachments and subpasses. Like the hazard checker, it shares no table and no code with the compiler.
+// What can be seen of a plan without walking it: its order, lifetimes, usages, places in memory, and what its render
+// passes say of attachments and subpasses. Like the hazard checker, it shares no table and no code with the compiler.
 #pragma once
 
 #include "engine/render_graph/compile.h"
@@ -15,6 +15,10 @@ namespace splice::test {
 /// nothing was placed).
 std::vector<std::string> find_flaws(const graph::Graph& graph, const graph::Plan& plan,
                                     const std::vector<graph::MemoryRequirement>& memory);
+
+/// Passes that are not exactly once in the order or culled, culled or reordered side effects, groups that do not tile
+/// the order.
+std::vector<std::string> find_disorder(const graph::Graph& graph, const graph::Plan& plan);
 
 /// For each resource, those that share bytes with it.
 std::vector<std::vector<uint32_t>> find_sharers(const graph::Plan& plan,

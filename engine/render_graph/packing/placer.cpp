@@ -17,7 +17,8 @@ struct Effort {
 };
 constexpr Effort kEfforts[] = {{0.065, 1500, 4}, {0.08, 8000, 20}, {0.09, 160000, 60}};
 constexpr uint32_t kPlacements = 600;
-// After the first two, placements come in rounds: so many by classes of sizes, then by size, then so many repairs of that.
+// After the first two, placements come in rounds: so many by classes of sizes, then by size, then so many repairs of
+// that.
 constexpr uint32_t kByClasses = 2, kRepairs = 3, kRound = kByClasses + 1 + kRepairs;
 
 }  // namespace

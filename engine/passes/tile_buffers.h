@@ -41,7 +41,6 @@ class TileBuffers {
 
     const TileUniforms& uniforms() const { return values_; }
     std::uint32_t cells() const { return values_.cells_x * values_.cells_y; }
-    const gpu::Buffer& cell_buffer() const { return cells_; }
 
   private:
     bool grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage);

@@ -53,12 +53,6 @@ VkClearValue clear_colour(float red, float green, float blue, float alpha) {
     return value;
 }
 
-VkClearValue clear_colour_uint(uint32_t red, uint32_t green, uint32_t blue, uint32_t alpha) {
-    VkClearValue value;
-    value.color = {.uint32 = {red, green, blue, alpha}};
-    return value;
-}
-
 VkClearValue clear_depth_stencil(float depth, uint32_t stencil) {
     VkClearValue value;
     value.depthStencil = {depth, stencil};

@@ -153,7 +153,6 @@ struct Contents {
 };
 
 VkClearValue clear_colour(float red, float green, float blue, float alpha);
-VkClearValue clear_colour_uint(uint32_t red, uint32_t green, uint32_t blue, uint32_t alpha);
 VkClearValue clear_depth_stencil(float depth, uint32_t stencil);
 
 using RecordFunction = std::function<void(const PassContext&)>;

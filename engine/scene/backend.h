@@ -10,7 +10,7 @@ namespace splice {
 enum class Backend : std::uint32_t {
     kAuto,    // the fastest on the device that can draw the view
     kSprite,  // point sprites and quads, rasterised: the reference
-    kTile,    // compute: splats listed by screen tile, both surfel passes gathered in one go
+    kTile,    // compute: splats gathered by screen tile, both surfel passes in one go
 };
 
 inline constexpr Names<Backend, 3> kBackendNames{

@@ -41,10 +41,6 @@ constexpr graph::ExternalUse kAcquired{{VK_PIPELINE_STAGE_TRANSFER_BIT, 0}, VK_I
 Presenter::Presenter(gpu::Device& device, VkSurfaceKHR surface, gpu::PresentMode mode)
     : device_(device), swapchain_(device, surface), wanted_mode_(mode), executor_(device, {.timestamps = false}) {}
 
-void Presenter::set_mode(gpu::PresentMode mode) {
-    wanted_mode_ = mode;
-}
-
 graph::ImageHandle Presenter::declare(const std::vector<ShownPicture>& pictures, const DrawInterface& draw_interface,
                                       graph::Bindings& bindings, std::uint32_t image) {
     graph_.clear();

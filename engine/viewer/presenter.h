@@ -40,7 +40,6 @@ class Presenter {
 
     Presenter(gpu::Device& device, VkSurfaceKHR surface, gpu::PresentMode mode);
 
-    void set_mode(gpu::PresentMode mode);
     gpu::PresentMode mode() const { return swapchain_.mode(); }
 
     /// One frame in a window of so many pixels; what no picture covers is grey where there are no pictures, else

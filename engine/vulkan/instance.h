@@ -36,7 +36,6 @@ class Instance {
     Instance& operator=(const Instance&) = delete;
 
     VkInstance handle() const { return instance_; }
-    bool validating() const { return messenger_ != VK_NULL_HANDLE; }
     /// Debug names and labels are recorded only where something can show them (a layer or a capture tool).
     bool debug_utils() const { return debug_utils_; }
 

@@ -55,6 +55,7 @@ struct CaptureSettings {
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
+    double tau = 0;  // pixels by which a level of detail may be off (engine/scene/lod_cut.h); 0: full detail
     Backend backend = Backend::kSprite;
     bool force_quads = false;  // draw every surfel as an oriented quad, none as a point sprite
     friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
@@ -67,6 +68,14 @@ struct PassTime {
         {};  // with RendererOptions::graph.pipeline_statistics, where there are any
 };
 
+/// How the level of detail of a frame was chosen.
+struct CutStats {
+    double tau = 0;  // pixels; 0: nothing was chosen
+    CutStatistics counts;
+    double select_ms = 0;  // of the host: culling and choosing; gathering what was chosen
+    double gather_ms = 0;
+};
+
 struct FrameStats {
     std::string device;
     Backend backend = Backend::kSprite;  // that drew the frame
@@ -76,6 +85,7 @@ struct FrameStats {
     std::vector<PassTime> passes;     // in order of execution
     std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
     std::uint64_t triangles_drawn = 0;
+    CutStats cut = {};
     std::uint64_t covered_pixels = 0;  // at least by half
     double overlap_mean = 0;           // surfels contributing to a pixel, over pixels with any; with want_overlap
 };

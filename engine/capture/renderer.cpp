@@ -4,6 +4,7 @@
 #include "engine/passes/frame.h"
 #include "engine/passes/read_back_pass.h"
 #include "engine/render_graph/executor/executor.h"
+#include "engine/scene/cut_store.h"
 #include "engine/scene/gpu_model.h"
 #include "engine/vulkan/transfer.h"
 #include "preprocess/model_format/error.h"
@@ -22,8 +23,10 @@ struct Renderer::Implementation {
         : own(std::make_unique<OwnDevice>(options)),
           device(own->device),
           executor(device, options.graph),
-          passes(device, options.most_tile_groups) {}
-    explicit Implementation(gpu::Device& borrowed) : device(borrowed), executor(device), passes(device) {}
+          passes(device, options.most_tile_groups),
+          cut_store(device) {}
+    explicit Implementation(gpu::Device& borrowed)
+        : device(borrowed), executor(device), passes(device), cut_store(device) {}
 
     // What becomes of the picture: passes that read it.
     using UsePicture = std::function<void(graph::Bindings&, graph::ImageHandle)>;
@@ -45,11 +48,18 @@ struct Renderer::Implementation {
     gpu::Device& device;
     graph::Executor executor;
     FramePasses passes;
+    CutStore cut_store;
     graph::Graph graph;
     gpu::Buffer pixels;
 };
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
 
 constexpr std::uint64_t kTexelBytes = 4;  // of both picture formats
 
@@ -106,7 +116,7 @@ void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
 
 void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
                                     View view, const UsePicture& use_picture, FrameStats* stats) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const std::uint32_t antialias = is_numeric(view) ? 1 : settings.antialias;
     const FrameSettings frame{.width = settings.width * antialias,
                               .height = settings.height * antialias,
@@ -124,8 +134,12 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .surfels_as_triangles = settings.shown == Shown::kTriangles,
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
-        .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0};
-    const DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
+        .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
+        .tau = settings.tau * antialias};
+    DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
+    const auto selected = Clock::now();
+    cut_store.gather(draws, view == View::kLevels);
+    const auto gathered = Clock::now();
     passes.data.update(frame, scene.lighting, scene.background);
 
     const Backend backend = choose_backend(settings.backend, device, passes, frame);
@@ -135,8 +149,9 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
 
     if (!stats) return;
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    stats->frame_ms = elapsed.count();
+    stats->frame_ms = milliseconds(start, Clock::now());
+    if (settings.tau > 0)
+        stats->cut = {settings.tau, draws.cut, milliseconds(start, selected), milliseconds(selected, gathered)};
     for (const graph::PassTiming& timing : executor.timings())
         stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
     stats->backend = backend;

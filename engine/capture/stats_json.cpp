@@ -16,6 +16,20 @@ nlohmann::ordered_json json_of(const PassTime& pass) {
     return json;
 }
 
+nlohmann::ordered_json json_of(const CutStats& cut) {
+    nlohmann::ordered_json json;
+    json["tau"] = cut.tau;
+    json["visited"] = cut.counts.visited;
+    json["outside_frustum"] = cut.counts.outside_frustum;
+    json["facing_away"] = cut.counts.facing_away;
+    json["ellipses"] = cut.counts.ellipses;
+    json["merged_surfels"] = cut.counts.merged_surfels;
+    json["surfels"] = cut.counts.surfels;
+    json["select_ms"] = cut.select_ms;
+    json["gather_ms"] = cut.gather_ms;
+    return json;
+}
+
 nlohmann::ordered_json json_of(const FrameStats& stats) {
     nlohmann::ordered_json json;
     json["device"] = stats.device;
@@ -28,6 +42,7 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
         json["passes"].push_back(json_of(pass));
     json["surfels_drawn"] = stats.surfels_drawn;
     json["triangles_drawn"] = stats.triangles_drawn;
+    if (stats.cut.tau > 0) json["cut"] = json_of(stats.cut);
     json["covered_pixels"] = stats.covered_pixels;
     json["overlap_mean"] = stats.overlap_mean;
     return json;

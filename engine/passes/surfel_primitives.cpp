@@ -1,6 +1,7 @@
 #include "engine/passes/surfel_primitives.h"
 
-#include "engine/scene/gpu_model.h"
+#include "engine/scene/surfel_store.h"
+#include "preprocess/model_format/model_format.h"
 
 #include <array>
 
@@ -61,7 +62,7 @@ void SurfelPrimitives::draw_ranges(const graph::PassContext& context, const Fram
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0, 1, &frame_set, 0, nullptr);
     const InstanceConstants constants = instance_constants(instance, settings.epsilon_scale);
     vkCmdPushConstants(commands, layout_.handle(), kConstantStages, 0, sizeof constants, &constants);
-    const VkBuffer surfels = instance.model->surfels().handle();
+    const VkBuffer surfels = instance.surfels->buffer().handle();
     for (const DrawRange& range : ranges) {
         // Whole ranges by offset, so that vertex numbers start at 0 in both kinds and 32 bits suffice.
         const VkDeviceSize offset = range.first * sizeof(format::Surfel);

@@ -1,7 +1,7 @@
 #include "engine/passes/tile_passes.h"
 
 #include "engine/passes/surfel_normalise_pass.h"
-#include "engine/scene/gpu_model.h"
+#include "engine/scene/surfel_store.h"
 #include "shaders/tile_cells_comp.h"
 #include "shaders/tile_gather_comp.h"
 #include "shaders/tile_setup_comp.h"
@@ -109,7 +109,7 @@ void TilePasses::plan(const DrawList& draws) {
     for (const InstanceDraws& instance : draws.instances)
         for (const auto* ranges : {&instance.sprites, &instance.quads})
             for (const DrawRange& range : *ranges)
-                for (const SurfelChunk& chunk : instance.model->surfel_chunks()) {
+                for (const SurfelChunk& chunk : instance.surfels->chunks()) {
                     const std::uint64_t first = std::max(range.first, chunk.first);
                     const std::uint64_t end = std::min(range.first + range.count, chunk.first + chunk.count);
                     if (first < end) add_job(instance, chunk.set, first - chunk.first, end - first);

@@ -14,13 +14,6 @@ namespace {
 
 enum class Containment { kOutside, kPartly, kInside };
 
-// Pixels by which a splat may exceed its disk: sqrt(0.6) of the prefilter, up to 1 of a speck's pixel, and rounding.
-constexpr double kPrefilterReach = 1.5;
-
-// Radii from a disk's centre to the rim of its solid's faces, at most: the surface leaves the plane by at most a radius
-// (surfel_extent.h).
-constexpr double kSolidReach = std::numbers::sqrt2;
-
 template <typename T>
 glm::dvec3 vector_of(const T (&v)[3]) {
     return {v[0], v[1], v[2]};
@@ -37,6 +30,7 @@ class Culler {
 
     void visit_all() {
         const auto& octree = draws_.model->octree();
+        if (cuts()) draws_.cut = cut_points(draws_.model->hierarchy(), cut_view());
         if (octree.empty()) {
             visit_patches(0, static_cast<std::uint32_t>(draws_.model->patches().size()));
         } else {
@@ -49,6 +43,39 @@ class Culler {
         Containment containment;
         double nearest;  // depth, view space
     };
+
+    // Whether surfels come from the point tree; if not, from the patches.
+    bool cuts() const {
+        return options_.tau > 0 && options_.draw_surfels && !options_.surfels_as_triangles &&
+               !draws_.model->hierarchy().empty();
+    }
+
+    CutView cut_view() const {
+        return {.model_to_view = draws_.model_to_view,
+                .scale = draws_.scale,
+                .orthographic = camera_.orthographic,
+                .pixel_scale = scale_,
+                .half_x = half_x_,
+                .half_y = half_y_,
+                .near_plane = camera_.near_plane,
+                .two_sided = draws_.two_sided,
+                .tau = options_.tau,
+                .max_point_size = options_.force_quads ? 0 : options_.max_point_size};
+    }
+
+    // The coarsest triangles whose error is within tau wherever in the patch it is.
+    const format::Lod& level_of(const format::Patch& patch, double nearest) const {
+        const format::Lod* level = &draws_.model->lods()[patch.first_lod];
+        if (options_.tau == 0 || (!camera_.orthographic && nearest <= camera_.near_plane)) return *level;
+        const double stretch = camera_.orthographic ? 1 : std::hypot(1.0, half_x_, half_y_) / nearest;
+        const double pixels = scale_ * draws_.scale * stretch;
+        for (std::uint32_t next = 1; next < patch.lod_count; ++next) {
+            const format::Lod& coarser = draws_.model->lods()[patch.first_lod + next];
+            if (static_cast<double>(coarser.error) * pixels > options_.tau) break;
+            level = &coarser;
+        }
+        return *level;
+    }
 
     // A box of unit-box space against the frustum. The prefilter lets splats reach beyond their disks, and so beyond
     // the box: what misses the picture by no more than that is kept.
@@ -127,12 +154,12 @@ class Culler {
         const format::Patch& patch = draws_.model->patches()[index];
         const bool triangles =
             options_.surfels_as_triangles || patch.representation == format::Representation::kTriangles;
-        if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return;
+        if (!(triangles ? options_.draw_triangles : options_.draw_surfels && !cuts())) return;
         const Extent extent = locate(patch.bounds_min, patch.bounds_max);
         if (extent.containment == Containment::kOutside) return;
         if (triangles) {
-            const format::Lod& finest = draws_.model->lods()[patch.first_lod];
-            append(draws_.triangles, {finest.first_index, finest.index_count, patch.material, index},
+            const format::Lod& level = level_of(patch, extent.nearest);
+            append(draws_.triangles, {level.first_index, level.index_count, patch.material, index},
                    options_.merge_patches);
             return;
         }
@@ -182,6 +209,7 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
         const Transform& transform = instance.transform;
         InstanceDraws draws;
         draws.model = instance.model.get();
+        draws.surfels = &instance.model->surfels();
         draws.scale = transform.scale * info.source_scale;
         glm::dmat4 to_world(transform.rotation * draws.scale);
         to_world[3] = glm::dvec4(
@@ -197,6 +225,8 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
         for (const auto* ranges : {&draws.sprites, &draws.quads})
             for (const DrawRange& range : *ranges)
                 list.surfels += range.count;
+        list.cut += draws.cut.statistics;
+        list.surfels += draws.cut.statistics.ellipses + draws.cut.statistics.surfels;
         list.instances.push_back(std::move(draws));
     }
     return list;

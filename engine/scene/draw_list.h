@@ -4,8 +4,10 @@
 #pragma once
 
 #include "engine/scene/camera.h"
+#include "engine/scene/lod_cut.h"
 #include "engine/scene/named.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/splat_reach.h"
 
 #include <glm/glm.hpp>
 
@@ -14,9 +16,7 @@
 
 namespace splice {
 
-/// Cosine between a surfel's normal and the direction to the eye below which it is not drawn (one-sided) or turned to
-/// the eye (two-sided); HORIZON of frame.glsl.
-inline constexpr double kHorizon = -0.25;
+class SurfelStore;
 
 /// Consecutive indices or surfels of one model.
 struct DrawRange {
@@ -28,18 +28,21 @@ struct DrawRange {
 
 struct InstanceDraws {
     const GpuModel* model = nullptr;
-    glm::dmat4 model_to_view{1.0};  // from unit-box units
-    double scale = 1;               // world units per unit-box unit
+    const SurfelStore* surfels = nullptr;  // what `sprites` and `quads` are ranges of
+    glm::dmat4 model_to_view{1.0};         // from unit-box units
+    double scale = 1;                      // world units per unit-box unit
     bool two_sided = false;
     std::uint32_t first_patch = 0;  // patches of the instances before
     std::vector<DrawRange> triangles;
     std::vector<DrawRange> sprites;  // surfels that fit a point: small, and wholly inside the frustum
     std::vector<DrawRange> quads;    // the others
+    LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; gather_cuts makes ranges of it
 };
 
 struct DrawList {
     std::vector<InstanceDraws> instances;
-    std::uint64_t triangles = 0, surfels = 0;
+    std::uint64_t triangles = 0, surfels = 0;  // ellipses are surfels, too
+    CutStatistics cut;                         // of all instances
 };
 
 enum class Sides { kAsBaked, kOneSided, kTwoSided };
@@ -58,6 +61,7 @@ struct DrawListOptions {
     bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
     double max_point_size = 255;  // pixels, of the device
+    double tau = 0;               // pixels by which what is drawn may be off; 0: full detail
 };
 
 DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,

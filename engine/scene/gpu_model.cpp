@@ -1,6 +1,9 @@
 #include "engine/scene/gpu_model.h"
 
+#include "engine/scene/ellipse_record.h"
 #include "engine/vulkan/transfer.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -51,44 +54,34 @@ gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device) {
     return {device, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT, 1}}};
 }
 
-gpu::DescriptorSetLayout surfel_set_layout(const gpu::Device& device) {
-    return {device, {{0, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT, 1}}};
-}
-
 GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     : info_(*model.info),
       patches_(model.patches.begin(), model.patches.end()),
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
+      hierarchy_(point_hierarchy(model.point_tree, model.info->max_surfel_radius)),
+      surfels_(device, model.surfels.size(), gpu::MemoryUse::device, "surfels"),
       pool_(device) {
-    const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes,
-                            std::uint64_t padding = 0) {
-        gpu::Buffer result(device, {.size = bytes.size() + padding, .usage = usage, .name = name});
+    const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes) {
+        gpu::Buffer result(device, {.size = bytes.size(), .usage = usage, .name = name});
         gpu::upload(device, result, bytes);
         return result;
     };
     vertices_ = buffer("vertices", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.vertices));
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
-    // The padding is for synchronisation
-    // validation (1.3.239), which takes the four vertices of an instance for four records of the instance's buffer.
-    surfels_ = buffer("surfels", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
-                      std::as_bytes(model.surfels), 3 * sizeof(format::Surfel));
-    create_surfel_chunks(device, model.surfels.size());
+    gpu::upload(device, surfels_.buffer(), std::as_bytes(model.surfels));
+    if (!hierarchy_.empty() && surfels_.mapped().empty())
+        surfel_copy_.assign(model.surfels.begin(), model.surfels.end());
+    make_ellipses(model);
     create_materials(device, model);
 }
 
-void GpuModel::create_surfel_chunks(gpu::Device& device, std::uint64_t surfels) {
-    surfel_layout_ = surfel_set_layout(device);
-    constexpr std::uint64_t kTexels = sizeof(format::Surfel) / sizeof(std::uint32_t[4]);
-    constexpr std::uint64_t kAlignment = 16;  // surfels: no device asks for texel offsets of more than 256 bytes
-    const std::uint64_t most = device.limits().maxTexelBufferElements / kTexels / kAlignment * kAlignment;
-    for (std::uint64_t first = 0; first < surfels; first += most) {
-        const std::uint64_t count = std::min(most, surfels - first);
-        surfel_views_.push_back(gpu::create_texel_view(device, surfels_, VK_FORMAT_R32G32B32A32_UINT,
-                                                       first * sizeof(format::Surfel), count * sizeof(format::Surfel)));
-        surfel_chunks_.push_back({pool_.allocate(surfel_layout_), first, count});
-        gpu::DescriptorWriter(surfel_chunks_.back().set).sampled_texels(0, surfel_views_.back().get()).write(device);
-    }
+void GpuModel::make_ellipses(const ModelView& model) {
+    ellipses_.resize(hierarchy_.nodes.size());
+    tbb::parallel_for(std::size_t{0}, ellipses_.size(), [&](std::size_t i) {
+        const format::PointNode& node = hierarchy_.nodes[i];
+        ellipses_[i] = ellipse_record(node, model.surfels[node.first_surfel].patch);
+    });
 }
 
 void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
@@ -105,6 +98,10 @@ void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
             .sampled_image(0, images_[image].view(), sampler_.get())
             .write(device);
     }
+}
+
+std::span<const format::Surfel> GpuModel::host_surfels() const {
+    return surfel_copy_.empty() ? surfels_.mapped() : std::span<const format::Surfel>(surfel_copy_);
 }
 
 Box GpuModel::bounds() const {

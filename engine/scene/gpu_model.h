@@ -3,6 +3,8 @@
 #pragma once
 
 #include "engine/scene/camera.h"
+#include "engine/scene/lod_cut.h"
+#include "engine/scene/surfel_store.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
 #include "engine/vulkan/device.h"
@@ -16,16 +18,6 @@ namespace splice {
 /// Set 1 of the triangle pass, one a material: binding 0 the diffuse texture, white where there is no image.
 gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device);
 
-/// Set 1 of compute passes over surfels: binding 0 the records of a chunk as texels,
-/// R32G32B32A32_UINT, two each.
-gpu::DescriptorSetLayout surfel_set_layout(const gpu::Device& device);
-
-/// Surfels that one binding holds.
-struct SurfelChunk {
-    VkDescriptorSet set = VK_NULL_HANDLE;
-    std::uint64_t first = 0, count = 0;
-};
-
 class GpuModel {
   public:
     /// The view may go away afterwards, the device must outlive the model. Throws DeviceError.
@@ -38,29 +30,35 @@ class GpuModel {
     const std::vector<format::OctreeNode>& octree() const { return octree_; }
     const gpu::Buffer& vertices() const { return vertices_; }
     const gpu::Buffer& indices() const { return indices_; }
-    const gpu::Buffer& surfels() const { return surfels_; }
+    const SurfelStore& surfels() const { return surfels_; }
+    /// The records as the host may read them: of models with a point tree.
+    std::span<const format::Surfel> host_surfels() const;
+    /// Empty where the model has no point tree.
+    const PointHierarchy& hierarchy() const { return hierarchy_; }
+    /// A record (ellipse_record.h) for each node of the hierarchy.
+    std::span<const format::Surfel> ellipses() const { return ellipses_; }
     VkDescriptorSet material_set(std::uint32_t material) const { return material_sets_[material]; }
-    /// All surfels, in order, in as many pieces as the device's texel buffers need.
-    const std::vector<SurfelChunk>& surfel_chunks() const { return surfel_chunks_; }
     /// Source units.
     Box bounds() const;
 
   private:
-    void create_surfel_chunks(gpu::Device& device, std::uint64_t surfels);
+    void make_ellipses(const ModelView& model);
     void create_materials(gpu::Device& device, const ModelView& model);
 
     format::ModelInfo info_{};
     std::vector<format::Patch> patches_;
     std::vector<format::Lod> lods_;
     std::vector<format::OctreeNode> octree_;
-    gpu::Buffer vertices_, indices_, surfels_;
-    std::vector<gpu::Image> images_;  // the last is a white texel
+    PointHierarchy hierarchy_;
+    std::vector<format::Surfel> ellipses_;
+    gpu::Buffer vertices_, indices_;
+    SurfelStore surfels_;
+    std::vector<format::Surfel> surfel_copy_;  // where the host cannot read the device's
+    std::vector<gpu::Image> images_;           // the last is a white texel
     gpu::UniqueSampler sampler_;
-    gpu::DescriptorSetLayout set_layout_, surfel_layout_;
+    gpu::DescriptorSetLayout set_layout_;
     gpu::DescriptorPool pool_;
     std::vector<VkDescriptorSet> material_sets_;
-    std::vector<gpu::UniqueBufferView> surfel_views_;
-    std::vector<SurfelChunk> surfel_chunks_;
 };
 
 }  // namespace splice

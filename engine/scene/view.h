@@ -21,9 +21,10 @@ enum class View : std::uint32_t {
     kSamples = 9,         // a sparse subset of the surfels (4.4)
     kTrianglesOnly = 10,  // (4.11 c)
     kSurfelsOnly = 11,    // (4.11 d)
+    kLevels = 12,         // levels of detail: depths in the point tree, levels of triangles
 };
 
-inline constexpr Names<View, 12> kViewNames{{
+inline constexpr Names<View, 13> kViewNames{{
     {View::kShaded, "shaded", "the picture"},
     {View::kDepth, "depth", "distance to the surface, near is bright"},
     {View::kVisibility, "visibility", "depth buffer after the visibility pass, moved back by epsilon"},
@@ -36,6 +37,7 @@ inline constexpr Names<View, 12> kViewNames{{
     {View::kSamples, "samples", "a sparse subset of the surfels"},
     {View::kTrianglesOnly, "triangles-only", "triangle patches alone"},
     {View::kSurfelsOnly, "surfels-only", "surfel patches alone"},
+    {View::kLevels, "levels", "what --tau chose: a colour for each level of the tree, grey for full detail"},
 }};
 
 constexpr std::string_view name_of(View view) {

@@ -20,7 +20,7 @@ namespace splice {
 namespace {
 
 // Larger nodes are bounded by their children.
-constexpr std::uint32_t kBoundedByDisks = 4096;
+constexpr std::uint32_t kBoundedByDisks = 512;
 constexpr double kConeSteps = 255;
 // Bounds are stored in single precision; coordinates are below 1.
 constexpr double kRounding = 1e-6;
@@ -63,13 +63,14 @@ struct Sums {
 struct Part {
     Vec3d centre, normal;
     Vec3d axes[2];        // half axes
+    double longest;       // half axis
     double above, below;  // of a disk, its solid; of a child, how far its disks leave its plane
+    double height;        // how far its disks leave its plane: those of a child, whose ellipse holds their projections
     double sphere;        // radius about its centre
     double cone;          // half-angle, radians
 
-    // How far its disks go along `direction`. A child's ellipse holds their projections to its own plane, from which
-    // they rise by `height`.
-    double reach(const Vec3d& direction, double height) const {
+    // How far its disks go along `direction`.
+    double reach(const Vec3d& direction) const {
         const double in_plane = std::hypot(axes[0].dot(direction), axes[1].dot(direction));
         return std::min(in_plane + height * std::abs(normal.dot(direction)), sphere);
     }
@@ -90,6 +91,8 @@ Part part_of(const format::Surfel& surfel) {
     }
     part.above = static_cast<double>(extent.above);
     part.below = static_cast<double>(extent.below);
+    part.longest = r;
+    part.height = 0;
     part.sphere = std::hypot(r, std::max(part.above, part.below));
     part.cone = 0;
     return part;
@@ -162,23 +165,25 @@ class Builder {
         part.axes[1] = static_cast<double>(node.minor) * part.normal.cross(axis);
         part.above = thickness_[index].above;
         part.below = thickness_[index].below;
+        part.longest = static_cast<double>(node.major);
+        part.height = std::max(part.above, part.below);
         part.sphere = static_cast<double>(node.sphere_radius);
         part.cone = node.cone_angle * std::numbers::pi / kConeSteps;
         return part;
     }
 
-    /// visit(part, how far its disks leave its plane)
-    template <class Visit>
-    void for_each_part(const format::PointNode& node, const Visit& visit) const {
+    // What the node is bounded by.
+    std::vector<Part> parts_of(const format::PointNode& node) const {
+        std::vector<Part> parts;
         if (node.child_count != 0 && node.surfel_count > kBoundedByDisks) {
-            for (std::uint32_t child = 0; child < node.child_count; ++child) {
-                const Part part = part_of_node(node.first_child + child);
-                visit(part, std::max(part.above, part.below));
-            }
+            for (std::uint32_t child = 0; child < node.child_count; ++child)
+                parts.push_back(part_of_node(node.first_child + child));
         } else {
+            parts.reserve(node.surfel_count);
             for (const format::Surfel& surfel : surfels_of(node))
-                visit(part_of(surfel), 0.0);
+                parts.push_back(part_of(surfel));
         }
+        return parts;
     }
 
     // Ellipse, sphere, cone and thickness, from what the node stores of position and normal, so that rounding is in.
@@ -192,18 +197,22 @@ class Builder {
                       static_cast<double>(frame.s[2]));
         const Vec3d t(static_cast<double>(frame.t[0]), static_cast<double>(frame.t[1]),
                       static_cast<double>(frame.t[2]));
-        Ellipse ellipse = ellipse_of(sums_[index].covariance.in_plane(centre, s, t));
-        const Vec3d major_axis = ellipse.axis.x() * s + ellipse.axis.y() * t;
-        node.major_axis = encoded(major_axis);
+        const Ellipse spread = ellipse_of(sums_[index].covariance.in_plane(centre, s, t));
+        node.major_axis = encoded(spread.axis.x() * s + spread.axis.y() * t);
         // From here on the axis that is stored; what it leaves the plane by is within the rounding added below.
         const Vec3d major = decoded(node.major_axis), minor = normal.cross(major);
-        ellipse.axis = {1, 0};
 
-        double factor = 0, sphere = 0, cosine = 1, cone = 0, above = 0, below = 0, largest_radius = 0;
-        for_each_part(node, [&](const Part& part, double rise) {
+        const std::vector<Part> parts = parts_of(node);
+        std::vector<Footprint> footprints;
+        footprints.reserve(parts.size());
+        double sphere = 0, cosine = 1, cone = 0, above = 0, below = 0, largest_radius = 0;
+        for (const Part& part : parts) {
             const Vec3d offset = part.centre - centre;
-            factor = std::max(factor, factor_to_hold(ellipse, {offset.dot(major), offset.dot(minor)},
-                                                     part.reach(major, rise), part.reach(minor, rise)));
+            footprints.push_back({.x = offset.dot(major),
+                                  .y = offset.dot(minor),
+                                  .reach_x = part.reach(major),
+                                  .reach_y = part.reach(minor),
+                                  .radius = std::min(part.longest + part.height, part.sphere)});
             sphere = std::max(sphere, offset.norm() + part.sphere);
             if (part.cone == 0) {
                 cosine = std::min(cosine, part.normal.dot(normal));
@@ -214,12 +223,13 @@ class Builder {
                          slant = std::hypot(part.axes[0].dot(normal), part.axes[1].dot(normal));
             above = std::max(above, height + slant + part.above);
             below = std::max(below, -height + slant + part.below);
-            largest_radius = std::max(largest_radius, part.axes[0].norm());
-        });
+            largest_radius = std::max(largest_radius, part.longest);
+        }
         cone = std::max(cone, std::acos(std::clamp(cosine, -1.0, 1.0)));
+        const Ellipse ellipse = ellipse_around(footprints);
         const auto length = [](double value) { return static_cast<float>(value * (1 + kRounding) + kRounding); };
-        node.major = length(factor * ellipse.major);
-        node.minor = length(factor * ellipse.minor);
+        node.major = length(ellipse.major);
+        node.minor = length(ellipse.minor);
         node.sphere_radius = length(sphere);
         // A thousandth of a radian for the rounding of normals.
         node.cone_angle =

@@ -47,7 +47,7 @@ bool may_show(uint index) {
     const uvec4 place = texelFetch(surfels, int(2 * index));
     const vec3 centre = to_view_space(uintBitsToFloat(place.xyz));
     const float depth = -centre.z;
-    const float reach = sqrt(2.0) * unpackHalf2x16(place.w).x * instance.scale;
+    const float reach = sqrt(2.0) * abs(unpackHalf2x16(place.w).x) * instance.scale;
     const vec2 half_view = (frame.viewport * 0.5 + PREFILTER_REACH) / frame.pixel_scale;
     const vec2 outside = ORTHOGRAPHIC ? abs(centre.xy) - half_view
                                       : (abs(centre.xy) - half_view * depth) * inversesqrt(1 + half_view * half_view);
@@ -99,7 +99,7 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             marks |= is_sub_pixel(splat) ? MARK_SPECK : 0;
             marks |=
                 splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane ? MARK_NEAR : 0;
-            marks |= VIEW != VIEW_SAMPLES && record.clip >> 6 != 0 ? MARK_CUT : 0;
+            marks |= VIEW != VIEW_SAMPLES && !is_ellipse(record) && record.clip >> 6 != 0 ? MARK_CUT : 0;
             bounds.solid = marks != 0;
             imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
             imageStore(records, texel + 2,

@@ -92,36 +92,48 @@ TEST_CASE("an ellipse has the axes of its covariance, square roots of the eigenv
     CHECK(std::abs(ellipse.axis.dot(solver.eigenvectors().col(1))) == Approx(1));
 }
 
-TEST_CASE("an ellipse of points on a line has width, and one of one point is a circle") {
+TEST_CASE("an ellipse of points on a line has no width, and one of one point no length") {
     Matrix2d line;
     line << 0, 0, 0, 4;
     const Ellipse ellipse = ellipse_of(line);
     CHECK(std::abs(ellipse.axis.y()) == Approx(1));
     CHECK(ellipse.major == Approx(2));
-    CHECK(ellipse.minor == Approx(0.5));
-    CHECK(ellipse_of(Matrix2d::Zero()).minor == 1);
+    CHECK(ellipse.minor == 0);
+    CHECK(ellipse_of(Matrix2d::Zero()).major == 0);
 }
 
-TEST_CASE("the factor makes an ellipse hold the disk, and not much more") {
+TEST_CASE("an ellipse holds its disks, and is hardly longer than their circle and never larger") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (int round = 0; round < 200; ++round) {
-        Ellipse ellipse;
-        const double angle = 3 * uniform(random);
-        ellipse.axis = {std::cos(angle), std::sin(angle)};
-        ellipse.major = 2;
-        ellipse.minor = 0.5 + std::abs(uniform(random));
-        const Vector2d centre(3 * uniform(random), 3 * uniform(random));
-        const double radius = std::abs(uniform(random));
-        const double factor = factor_to_hold(ellipse, centre, radius, radius);
-        const Vector2d across(-ellipse.axis.y(), ellipse.axis.x());
-        double needed = 0;
-        for (int i = 0; i < 256; ++i) {
-            const Vector2d rim = centre + radius * Vector2d(std::cos(i * 0.0245437), std::sin(i * 0.0245437));
-            needed =
-                std::max(needed, std::hypot(rim.dot(ellipse.axis) / ellipse.major, rim.dot(across) / ellipse.minor));
+        std::vector<Footprint> disks;
+        const double flatness = std::abs(uniform(random));
+        for (int i = 0; i <= round % 20; ++i) {
+            const double radius = 0.3 * std::abs(uniform(random));
+            disks.push_back({uniform(random), flatness * uniform(random), radius, radius, radius});
         }
-        CHECK(factor >= needed - 1e-9);
-        CHECK(factor <= 1.45 * needed);  // sqrt 2 where it is the rectangle's corner that counts
+        const Ellipse ellipse = ellipse_around(disks);
+        double circle = 0, farthest = 0;
+        for (const Footprint& disk : disks) {
+            circle = std::max(circle, std::hypot(disk.x, disk.y) + disk.radius);
+            for (int i = 0; i < 256; ++i) {
+                const double x = disk.x + disk.radius * std::cos(i * 0.0245437),
+                             y = disk.y + disk.radius * std::sin(i * 0.0245437);
+                farthest = std::max(farthest, std::hypot(x / ellipse.major, y / ellipse.minor));
+            }
+        }
+        CHECK(farthest <= 1 + 1e-9);
+        CHECK(ellipse.minor <= ellipse.major);
+        CHECK(ellipse.major <= 1.1 * circle * (1 + 1e-9));
+        CHECK(ellipse.major * ellipse.minor <= circle * circle * (1 + 1e-9));
     }
+}
+
+TEST_CASE("disks in a row make a narrow ellipse") {
+    std::vector<Footprint> row;
+    for (int i = -10; i <= 10; ++i)
+        row.push_back({0.1 * i, 0, 0.05, 0.05, 0.05});
+    const Ellipse ellipse = ellipse_around(row);
+    CHECK(ellipse.major < 1.2);
+    CHECK(ellipse.minor < 0.2);
 }

@@ -191,7 +191,7 @@ TEST_CASE("bounds are not much larger than what they hold") {
         const double own = static_cast<double>(node.surfel_count) / (128 * 128);
         const double ellipse = std::numbers::pi * static_cast<double>(node.major) * static_cast<double>(node.minor);
         CHECK(ellipse < 5 * own + 40.0 / (128 * 128));
-        CHECK(node.cone_angle <= 3);  // nothing but rounding, upward at three places
+        CHECK(node.cone_angle <= 4);  // nothing but rounding, upward once a level above 512 disks, and twice below
         CHECK(std::abs(normal_of(node.normal).z()) > 0.999);
     }
 }

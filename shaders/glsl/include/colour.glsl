@@ -24,4 +24,11 @@ vec3 label_colour(uint number) {
     return decode_srgb(value * mix(vec3(1), ramp, saturation));
 }
 
+// A hue of six in turn, so that neighbouring levels differ; 0 is grey, full detail (linear).
+vec3 level_colour(uint level) {
+    if (level == 0) return vec3(0.6);
+    const vec3 ramp = clamp(abs(fract(float(level) / 6 + vec3(0, 2.0 / 3.0, 1.0 / 3.0)) * 6 - 3) - 1, 0, 1);
+    return decode_srgb(mix(vec3(0.9), ramp, 0.7));
+}
+
 #endif

@@ -97,10 +97,13 @@ vec4 clip_line(vec3 clip, Splat splat) {
     return ORTHOGRAPHIC ? vec4(l, l0, skewed) : vec4(l + l0 * splat.g, l0, clip.z + skewed);
 }
 
-// `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing
-// of it can be seen.
-bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swell, vec3 clip, float epsilon,
-                out Splat splat) {
+// `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` along s and `epsilon` in world units; the
+// half axis along t is `ratio` of it, 1 for a disk. False: nothing of it can be seen.
+bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ratio, vec2 swell, vec3 clip,
+                float epsilon, out Splat splat) {
+    // From here on s and t are the half axes in units of the radius, and v is what to_v measures.
+    const vec3 to_v = t / ratio;
+    t *= ratio;
     const float depth = -centre.z;
     const vec2 slope = vec2(-s.z, -t.z);  // change of depth along the tangents
     const float steepness = length(slope);
@@ -128,9 +131,9 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, vec2 swe
     const float reach = (ORTHOGRAPHIC ? 1 : splat.anchor_depth) / radius;
     const vec3 along_x = (dx - splat.g.x * ray) * reach, along_y = (dy - splat.g.y * ray) * reach;
     splat.anchor = project_to_window(p);
-    splat.plane_map = vec4(dot(s, along_x), dot(t, along_x), dot(s, along_y), dot(t, along_y));
+    splat.plane_map = vec4(dot(s, along_x), dot(to_v, along_x), dot(s, along_y), dot(to_v, along_y));
     const vec3 off_axis = ORTHOGRAPHIC ? ray / facing : centre / radius;
-    splat.skew = vec3(dot(s, off_axis), dot(t, off_axis), radius / facing);
+    splat.skew = vec3(dot(s, off_axis), dot(to_v, off_axis), radius / facing);
     splat.clip = clip_line(clip, splat);
     splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
 

@@ -6,15 +6,17 @@
 // format::Surfel, decoded.
 struct SurfelRecord {
     vec3 position;
-    float radius;
+    float radius;  // below 0: an ellipse, engine/scene/ellipse_record.h
     vec2 normal;  // octahedral
     vec3 colour;  // sRGB-encoded
     float bend_0;  // format::Surfel::shading_bend, 1 for the largest
     vec4 bend_1_4;
     uint patch_number;
     uint extent;  // preprocess/model_format/surfel_extent.h
-    uint clip;    // preprocess/model_format/surfel_clip.h
+    uint clip;    // preprocess/model_format/surfel_clip.h; of an ellipse, its axes
 };
+
+bool is_ellipse(SurfelRecord record) { return record.radius < 0; }
 
 // The same surfels whatever else is drawn with them.
 bool in_sample(vec3 position) {
@@ -28,8 +30,9 @@ bool in_sample(vec3 position) {
 }
 
 struct SurfelFrame {
-    vec3 centre, normal, s, t;  // view space; s and t as format::Surfel::shading_bend means them
-    float radius;               // world units
+    vec3 centre, normal, s, t;  // view space; s and t as format::Surfel::shading_bend means them, or an ellipse's axes
+    float radius;               // along s, world units
+    float ratio;                // of the half axis along t to it; 1 for a disk
 };
 
 // kSwellStep, kSwellStep, kEpsilonStep; kSwellOne, kSwellOne, kEpsilonOne
@@ -53,6 +56,18 @@ vec3 decode_clip(uint bits) {
     return vec3(cos(turn), sin(turn), 1 - float(cut) / CLIP_STEPS);
 }
 
+// kAxisDirections, kAxisSteps of engine/scene/ellipse_record.h
+const float AXIS_DIRECTIONS = 256;
+const float AXIS_STEPS = 255;
+
+void turn_to_axes(uint axes, inout SurfelFrame surfel) {
+    const float turn = 3.141592654 / AXIS_DIRECTIONS * float(axes & 0xff);
+    const vec3 s = surfel.s, t = surfel.t;
+    surfel.s = cos(turn) * s + sin(turn) * t;
+    surfel.t = cos(turn) * t - sin(turn) * s;
+    surfel.ratio = float(axes >> 8) / AXIS_STEPS;
+}
+
 // The splat of a surfel; false if it is not to be drawn.
 bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) {
     const vec3 centre = surfel.centre = to_view_space(record.position);
@@ -61,9 +76,11 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
     tangents_of(model_normal, surfel.s, surfel.t);
     surfel.s = normal_to_view_space(surfel.s);
     surfel.t = normal_to_view_space(surfel.t);
+    surfel.ratio = 1;
+    if (is_ellipse(record)) turn_to_axes(record.clip, surfel);
     const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
     if (!two_sided && beyond_horizon(normal, centre)) return false;
-    const float baked_radius = record.radius * instance.scale;
+    const float baked_radius = abs(record.radius) * instance.scale;
     float radius = baked_radius;
     if (VIEW == VIEW_SAMPLES) {
         if (!in_sample(record.position)) return false;
@@ -71,8 +88,9 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
     }
     surfel.radius = radius;
     const vec3 shares = decode_extent(record.extent);
-    return make_splat(centre, normal, surfel.s, surfel.t, radius, VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
-                      VIEW == VIEW_SAMPLES ? NO_CLIP : decode_clip(record.clip),
+    return make_splat(centre, normal, surfel.s, surfel.t, radius, surfel.ratio,
+                      VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      VIEW == VIEW_SAMPLES || is_ellipse(record) ? NO_CLIP : decode_clip(record.clip),
                       shares.z * baked_radius * instance.epsilon_scale, splat);
 }
 
@@ -93,7 +111,10 @@ const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0,
 // 1, or -1 where a two-sided surface is seen from behind.
 float side_of(SurfelFrame surfel) { return dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1; }
 
-vec3 surfel_albedo(SurfelRecord record) { return view_albedo(decode_srgb(record.colour), record.patch_number, true); }
+vec3 surfel_albedo(SurfelRecord record) {
+    const bool finest = VIEW == VIEW_LEVELS && !is_ellipse(record);
+    return view_albedo(decode_srgb(record.colour), finest ? 0 : record.patch_number, true);
+}
 
 // The shading normal, to first order: at the centre, where it is unit, and how it changes along both tangents, a radius.
 struct SurfelNormals {
@@ -123,7 +144,8 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
     vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
         normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);
-        positions[p] = surfel.centre + surfel.radius * (LIT_AT[p].x * surfel.s + LIT_AT[p].y * surfel.t);
+        positions[p] =
+            surfel.centre + surfel.radius * (LIT_AT[p].x * surfel.s + LIT_AT[p].y * (surfel.ratio * surfel.t));
         diffuse[p] = frame.ambient;
         highlights[p] = vec3(0);
     }

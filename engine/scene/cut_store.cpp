@@ -1,0 +1,100 @@
+#include "engine/scene/cut_store.h"
+
+#include "engine/scene/gpu_model.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace splice {
+
+namespace {
+
+// Shorter runs are copied: a draw costs as much as some hundred surfels.
+constexpr std::uint32_t kInPlace = 2048;
+
+// A run and where its records go.
+struct Piece {
+    std::span<const format::Surfel> records;
+    std::uint64_t place;
+    std::uint32_t level;
+    bool inner;
+};
+
+class Gathering {
+  public:
+    explicit Gathering(bool levels) : levels_(levels) {}
+
+    std::uint64_t count() const { return count_; }
+    void copy_to(std::span<format::Surfel> records) const {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces_.size(), 256), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const Piece& piece = pieces_[i];
+                const auto copied = records.subspan(piece.place, piece.records.size());
+                std::copy(piece.records.begin(), piece.records.end(), copied.begin());
+                if (levels_ && piece.inner)
+                    for (format::Surfel& record : copied)
+                        record.patch = static_cast<std::uint16_t>(piece.level);
+            }
+        });
+    }
+
+    // The ranges of an instance: in place in `instance` itself, the others in what is returned.
+    InstanceDraws add(InstanceDraws& instance) {
+        InstanceDraws gathered;
+        gathered.model = instance.model;
+        gathered.model_to_view = instance.model_to_view;
+        gathered.scale = instance.scale;
+        gathered.two_sided = instance.two_sided;
+        gathered.first_patch = instance.first_patch;
+        add_runs(instance, true, instance.sprites, gathered.sprites);
+        add_runs(instance, false, instance.quads, gathered.quads);
+        return gathered;
+    }
+
+  private:
+    void add_runs(const InstanceDraws& instance, bool points, std::vector<DrawRange>& in_place,
+                  std::vector<DrawRange>& gathered) {
+        const std::span<const format::Surfel> surfels = instance.model->host_surfels();
+        const std::span<const format::Surfel> ellipses = instance.model->ellipses();
+        DrawRange range{.first = count_};
+        for (const CutRun& run : instance.cut.runs) {
+            if (run.fits_point != points) continue;
+            if (!run.inner && run.count >= kInPlace) {
+                in_place.push_back({.first = run.first, .count = run.count});
+                continue;
+            }
+            pieces_.push_back({(run.inner ? ellipses : surfels).subspan(run.first, run.count), count_, run.level,
+                               run.inner});
+            count_ += run.count;
+            range.count += run.count;
+        }
+        if (range.count != 0) gathered.push_back(range);
+    }
+
+    bool levels_;
+    std::uint64_t count_ = 0;
+    std::vector<Piece> pieces_;
+};
+
+}  // namespace
+
+void CutStore::gather(DrawList& draws, bool levels) {
+    Gathering gathering(levels);
+    std::vector<InstanceDraws> added;
+    for (InstanceDraws& instance : draws.instances)
+        if (!instance.cut.runs.empty()) added.push_back(gathering.add(instance));
+    if (gathering.count() == 0) return;
+    if (!store_ || store_->capacity() < gathering.count()) {
+        store_.reset();
+        store_.emplace(device_, gathering.count() + gathering.count() / 2, gpu::MemoryUse::upload, "cut");
+    }
+    gathering.copy_to(store_->mapped());
+    for (InstanceDraws& instance : added) {
+        instance.surfels = &*store_;
+        draws.instances.push_back(std::move(instance));
+    }
+}
+
+}  // namespace splice

@@ -1,0 +1,76 @@
+// The choice of a frame's level of detail (Pajarola et al. 2004, section 6.2): a cut through a point tree, made of nodes
+// that are drawn as one elliptical splat each and of surfels, so that every surfel that may be seen is in it once,
+// itself or in one node above it.
+//
+// With two corrections and one change. A node faces away if its normals do from everywhere in its sphere, not only from
+// its centre; tilt does not shrink a node, whose length across the view stays. What is bounded is not the area of a
+// projected ellipse as a share of the picture but its half length in pixels: nothing is drawn farther than `tau` from the
+// middle of what it stands for, and a long thin ellipse does not pass. At 1 the ellipse's Gaussian (a standard deviation
+// of 0.7 pixels) is hardly wider than the prefilter's (0.55).
+#pragma once
+
+#include "preprocess/model_format/model_format.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace splice {
+
+/// A model's point tree as the choice reads it.
+struct PointHierarchy {
+    std::vector<format::PointNode> nodes;  // breadth first
+    std::vector<float> finest;             // of each node, the smallest extent (see extent_of) in its subtree
+    float largest_radius = 0;              // of the model's surfels, unit-box units
+
+    bool empty() const { return nodes.empty(); }
+};
+
+PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, float largest_radius);
+
+/// What is projected and compared with tau: half of what a node is long, whichever way; unit-box units.
+float extent_of(const format::PointNode& node);
+
+/// Where a model is seen from.
+struct CutView {
+    glm::dmat4 model_to_view{1.0};  // from unit-box units
+    double scale = 1;               // world units per unit-box unit
+    bool orthographic = false;
+    double pixel_scale = 1;         // pixels per unit at depth 1, or anywhere
+    double half_x = 1, half_y = 1;  // of the picture, at depth 1 or anywhere
+    double near_plane = 1e-3;       // depth, world units
+    bool two_sided = false;         // nothing is left out because of its normals
+    double tau = 1;                 // pixels, above 0: see above
+    double max_point_size = 255;    // pixels; see CutRun::fits_point
+};
+
+/// Consecutive surfels, or nodes, of the model.
+struct CutRun {
+    std::uint32_t first = 0, count = 0;
+    bool inner = false;       // nodes
+    bool fits_point = false;  // wholly inside the frustum, and none is wider than the largest point
+    std::uint32_t level = 0;  // of nodes, their depth in the tree, counted from 1; of surfels 0
+    friend bool operator==(const CutRun&, const CutRun&) = default;
+};
+
+struct CutStatistics {
+    std::uint64_t visited = 0;                           // nodes
+    std::uint64_t outside_frustum = 0, facing_away = 0;  // nodes at which the walk ended
+    std::uint64_t ellipses = 0;                          // nodes that are drawn in place of what is below them
+    std::uint64_t merged_surfels = 0;                    // those below them
+    std::uint64_t surfels = 0;                           // drawn themselves
+    CutStatistics& operator+=(const CutStatistics& other);
+    friend bool operator==(const CutStatistics&, const CutStatistics&) = default;
+};
+
+struct LodCut {
+    std::vector<CutRun> runs;  // in the order of the surfels they stand for
+    CutStatistics statistics;
+};
+
+/// Deterministic for any thread count.
+LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view);
+
+}  // namespace splice

@@ -14,6 +14,7 @@
 #include "engine/scene/backend.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
+#include "engine/scene/kernel.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shading.h"
 #include "engine/scene/shown.h"
@@ -48,6 +49,7 @@ struct CaptureSettings {
     Shown shown = Shown::kHybrid;
     Sides sides = Sides::kAsBaked;
     double epsilon_scale = 1;                         // thesis 4.3.1 uses 0.75..1.5; times each surfel's own epsilon
+    Kernel kernel = {};                               // how a splat's weight falls off
     bool prefilter = true;                            // EWA's screen-space low-pass filter (I in V = J Vr J^T + I)
     std::uint32_t antialias = 1;                      // samples along each side of a pixel; of pictures, not of numbers
     Shading shading = Shading::kSurfel;               // where light is computed

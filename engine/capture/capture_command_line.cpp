@@ -111,7 +111,7 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau;
+        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, kernel;
     bool one_sided = false, two_sided = false;
 };
 
@@ -137,6 +137,14 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     if (!raw.height.empty())
         command.orthographic_height = parse_in_range(raw.height, "--height", 1e-30, 1e30, " world units");
     if (!raw.background.empty()) command.background = parse_background(raw.background);
+    if (!raw.kernel.empty()) {
+        command.kernel = parse_kernel(raw.kernel);
+        if (!command.kernel)
+            throw UsageError(
+                "--kernel: expected gaussian:SIGMA (0.05 to 10), confetti:A,B,N (0.01 to 100, 0.1 to 4, 0.5 to 32) or "
+                "constant, got \"" +
+                raw.kernel + "\"");
+    }
     if (!raw.tau.empty()) command.tau = parse_in_range(raw.tau, "--tau", 0, 1000, " pixels");
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
@@ -246,6 +254,10 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_option("--antialias", raw.antialias,
                    "N x N samples a pixel, 1 to 8, default 1: outlines are smooth and stay in place; slower")
         ->option_text("N");
+    app.add_option("--kernel", raw.kernel,
+                   "How a splat's weight falls off from its centre; default: a Gaussian that ends at its rim. Published: "
+                   "gaussian:0.3, 0.5, 0.8; confetti:1,1.5,2, 6,1.5,3, 4,1.5,5")
+        ->option_text("gaussian:SIGMA|confetti:A,B,N|constant");
     app.add_option("--tau", raw.tau,
                    "Level of detail: how many pixels what is drawn may reach beyond its place, 0 to 1000; default 0, "
                    "full detail")

@@ -31,6 +31,7 @@ struct CaptureCommand {
     std::optional<bool> prefilter;
     std::optional<Shading> shading;
     std::optional<double> tau;               // pixels
+    std::optional<Kernel> kernel;
     std::optional<std::uint32_t> antialias;  // samples along a pixel's side
     std::optional<std::filesystem::path> stats;
     std::optional<std::filesystem::path> graph;  // ends in .dot, .mmd or .json

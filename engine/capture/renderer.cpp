@@ -125,6 +125,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                               .view = view,
                               .epsilon_scale = settings.epsilon_scale,
                               .prefilter = settings.prefilter,
+                              .kernel = settings.kernel,
                               .shading = settings.shading};
     const DrawListOptions list_options{
         .sides = settings.sides,

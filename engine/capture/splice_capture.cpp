@@ -41,6 +41,7 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.prefilter = command.prefilter.value_or(scene.prefilter);
     settings.shading = command.shading.value_or(scene.shading);
     settings.antialias = command.antialias.value_or(scene.antialias);
+    settings.kernel = command.kernel.value_or(settings.kernel);
     settings.tau = command.tau.value_or(settings.tau);
     settings.want_overlap = command.stats.has_value();
     if (command.graph) settings.want_graph = graph::export_format_of(command.graph->string());

@@ -4,6 +4,7 @@
 #include "engine/passes/shader_types.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
+#include "engine/scene/kernel.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shading.h"
 #include "engine/scene/view.h"
@@ -25,6 +26,7 @@ struct FrameSettings {
     View view = View::kShaded;
     double epsilon_scale = 1;
     bool prefilter = true;
+    Kernel kernel = {};
     Shading shading = Shading::kSurfel;
 };
 
@@ -56,11 +58,12 @@ class FrameData {
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl, and the attachments.
+/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl, 5 to 9 of splat.glsl, and the attachments.
 struct FrameVariant {
     std::uint32_t view;
     std::uint32_t orthographic;
     bool deferred;
+    Kernel kernel;
     auto operator<=>(const FrameVariant&) const = default;
 };
 FrameVariant frame_variant(const FrameSettings& settings);

@@ -20,6 +20,8 @@ constexpr double kConeSteps = 255;  // format::PointNode::cone_angle
 // Subtrees that are walked at once.
 constexpr std::size_t kTasks = 64;
 constexpr int kMostRounds = 8;
+// Surfels that are not worth looking for nodes that face away.
+constexpr std::uint32_t kHardlyAway = 256;
 
 glm::dvec3 position_of(const format::PointNode& node) {
     return {node.position[0], node.position[1], node.position[2]};
@@ -102,7 +104,7 @@ class Walk {
         const double reach = std::min(radius, static_cast<double>(hierarchy_.largest_radius));
         const bool fits = fits_point(inside, reach, depth - radius);
         // Where nothing below is small enough from anywhere, either, there is nothing left to decide.
-        const bool full = inside && fits && view_.two_sided &&
+        const bool full = inside && fits && (view_.two_sided || node.surfel_count <= kHardlyAway) &&
                           static_cast<double>(hierarchy_.finest[visit.node]) * pixels_at_farthest(depth + radius) >
                               view_.tau;
         if (!full && node.child_count != 0) return true;

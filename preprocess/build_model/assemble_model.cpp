@@ -3,6 +3,7 @@
 #include "preprocess/build_model/normal_cone.h"
 #include "preprocess/build_model/patch_octree.h"
 #include "preprocess/build_model/texture_mips.h"
+#include "preprocess/lod/point_octree.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/surfel_extent.h"
@@ -37,6 +38,7 @@ class Assembler {
         add_triangles();
         add_patches();
         add_surfels();
+        model_.point_tree = build_patch_point_octree(model_.surfels, model_.patches, model_.octree);
         add_merge_tree();
         add_materials();
         add_info();

@@ -102,8 +102,7 @@ class Builder {
   public:
     explicit Builder(std::vector<format::Surfel>& surfels) : surfels_(surfels) {}
 
-    std::vector<format::PointNode> build() {
-        PointSplit split = split_points(surfels_);
+    std::vector<format::PointNode> build(PointSplit split) {
         reorder(split.order);
         nodes_ = std::move(split.nodes);
         sums_.resize(nodes_.size());
@@ -253,7 +252,14 @@ class Builder {
 
 std::vector<format::PointNode> build_point_octree(std::vector<format::Surfel>& surfels) {
     if (surfels.empty()) return {};
-    return Builder(surfels).build();
+    return Builder(surfels).build(split_points(surfels));
+}
+
+std::vector<format::PointNode> build_patch_point_octree(std::vector<format::Surfel>& surfels,
+                                                        std::span<const format::Patch> patches,
+                                                        std::span<const format::OctreeNode> octree) {
+    if (surfels.empty()) return {};
+    return Builder(surfels).build(split_patches(surfels, patches, octree));
 }
 
 }  // namespace splice

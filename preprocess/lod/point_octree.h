@@ -7,6 +7,7 @@
 
 #include "preprocess/model_format/model_format.h"
 
+#include <span>
 #include <vector>
 
 namespace splice {
@@ -18,5 +19,11 @@ inline constexpr std::uint32_t kPointLeaf = 16;
 /// format::SectionKind::kPointTree. The surfels' patches are not looked at. Nothing for no surfels. Deterministic for
 /// any thread count. Fewer than 2^32 - 1 surfels.
 std::vector<format::PointNode> build_point_octree(std::vector<format::Surfel>& surfels);
+
+/// The same of a model whose surfels stay in their patches, and patches in their order: see split_patches. Octree
+/// leaves have at most eight patches.
+std::vector<format::PointNode> build_patch_point_octree(std::vector<format::Surfel>& surfels,
+                                                        std::span<const format::Patch> patches,
+                                                        std::span<const format::OctreeNode> octree);
 
 }  // namespace splice

@@ -17,6 +17,11 @@ struct PointSplit {
 
 PointSplit split_points(std::span<const format::Surfel> surfels);
 
+/// Of a model whose patches stay together: down to them, the nodes are those of the patch octree that have surfels and
+/// divide them; each patch with surfels has a node, and below it a split of its own.
+PointSplit split_patches(std::span<const format::Surfel> surfels, std::span<const format::Patch> patches,
+                         std::span<const format::OctreeNode> octree);
+
 inline Vec3d position_of(const format::Surfel& surfel) {
     return {static_cast<double>(surfel.position[0]), static_cast<double>(surfel.position[1]),
             static_cast<double>(surfel.position[2])};

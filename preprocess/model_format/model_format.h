@@ -14,7 +14,7 @@
 namespace splice::format {
 
 inline constexpr char kMagic[8] = {'S', 'P', 'L', 'I', 'C', 'E', '\r', '\n'};
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 
 struct FileHeader {
@@ -32,7 +32,7 @@ enum class SectionKind : std::uint32_t {
     kModelInfo = 1,   // one ModelInfo
     kVertices = 2,    // Vertex
     kIndices = 3,     // uint32; the finest level of all patches comes first, patch by patch
-    kSurfels = 4,     // Surfel; a patch's are contiguous and in Morton order
+    kSurfels = 4,     // Surfel; a patch's are contiguous, in the order of the point tree
     kPatches = 5,     // Patch, in octree order
     kLods = 6,        // Lod
     kOctree = 7,      // OctreeNode; node 0 is the root, children of a node are contiguous
@@ -40,7 +40,7 @@ enum class SectionKind : std::uint32_t {
     kMaterials = 9,   // Material; at least one
     kTextures = 10,   // Texture
     kTexels = 11,     // bytes, RGBA8 sRGB, mip levels one after another, rows top to bottom
-    kPointTree = 12,  // PointNode; of a point cloud, else none. Node 0 is the root, children of a node are contiguous
+    kPointTree = 12,  // PointNode; none without surfels. Node 0 is the root, children of a node are contiguous
 };
 
 struct SectionEntry {

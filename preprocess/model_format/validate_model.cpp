@@ -288,7 +288,6 @@ class Validator {
     void check_point_tree() const {
         if (view_.point_tree.empty()) return;
         const PointNode& root = view_.point_tree.front();
-        require(is_cloud(), root, "a point tree in a model that is no point cloud");
         require(root.first_surfel == 0 && root.surfel_count == view_.surfels.size(), root,
                 "point tree's root does not hold all surfels");
         std::uint64_t next = 1;

@@ -152,7 +152,9 @@ TileSolid solid_in_tile(SplatSolid solid, TilePlane plane, bool speck) {
     const vec2 ends = vec2(-solid.swell.y, solid.swell.x) * (ORTHOGRAPHIC ? 1 : solid.climb);
     // A speck shows at its own pixel and nowhere else.
     const vec2 h = speck ? vec2(0) : vec2(min(ends.x, ends.y), max(ends.x, ends.y));
-    return TileSolid(solid.clip.x * plane.u + solid.clip.y * plane.v - solid.clip.z * plane.e,
+    vec3 past_clip = solid.clip.x * plane.u + solid.clip.y * plane.v - solid.clip.z * plane.e;
+    past_clip.x -= CLIP_SLACK * length(past_clip.yz);
+    return TileSolid(past_clip,
                      dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew, h, solid.climb);
 }
 
@@ -296,8 +298,9 @@ void see_block(uint block, const bool solids, inout Tile tile) {
         } while (left != 0);
 }
 
-// exp(-x) for x in [0, 1], to 1e-5: Chebyshev interpolation.
+// The default kernel is exp(-x) for x in [0, 1], to 1e-5: Chebyshev interpolation.
 float falloff(float x) {
+    if (KERNEL != KERNEL_DISK) return other_kernel(min(x, KERNEL_SUPPORT2));
     return 0.99998916 + x * (-0.99945630 + x * (0.49556967 + x * (-0.15375046 + x * 0.025536540)));
 }
 
@@ -333,7 +336,7 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
     const vec3 my_bend = bend_u * mine.u.x + bend_v * mine.v.x;
     const vec3 bend_column = bend_u * mine.u.y + bend_v * mine.v.y, bend_row = bend_u * mine.u.z + bend_v * mine.v.z;
     // The ellipse, x^T V^-1 x / 2, as a polynomial of the column and of the row.
-    const vec3 conic = filtered.conic * vec3(0.5, 1, 0.5);
+    const vec3 conic = filtered.conic * (KERNEL_MOMENT * vec3(1, 2, 1));
     const vec3 ellipse_column = vec3(conic.x * d.x * d.x + conic.y * d.x * d.y + conic.z * d.y * d.y,
                                      2 * conic.x * d.x + conic.y * d.y, conic.x);
     const vec3 ellipse_row = vec3(2 * conic.z * d.y + conic.y * d.x, conic.y, conic.z);
@@ -375,7 +378,7 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
                 // Beyond the disk, the colour at its border; beyond the plane's horizon, that of its centre.
                 const float across = solids ? dot(meeting.nearest, meeting.nearest) : meeting.distance2;
                 const float scale = at.e > 0 ? inversesqrt(larger(across, at.e * at.e)) : 0;
-                const float exponent = smaller(meeting.on_disk ? meeting.distance2 * scale * scale : 1, ellipse);
+                const float exponent = smaller(meeting.on_disk ? meeting.distance2 * scale * scale : KERNEL_SUPPORT2, ellipse);
                 const float met_z = ORTHOGRAPHIC || !solids ? meeting.z : meeting.z / meeting.share;
                 const float z = smaller(larger(met_z, z_ends.x), z_ends.y);
                 bool cut_off = false;
@@ -383,7 +386,7 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
                 cut_off = clip_at > 0 && clip_at * clip_at > 0.25 * dot(solid.past_clip.yz, solid.past_clip.yz);
                 clip_at += solid.past_clip.z;
             }
-            bool reached = meeting.on_disk || (ellipse < 1 && !cut_off);
+            bool reached = meeting.on_disk || (ellipse < KERNEL_SUPPORT2 && !cut_off);
                 if (solids) reached = reached || meeting.beside_disk || speck_pixel == int(lane) + row * int(TILE.x);
                 reached = reached && z >= tile.visible[row];
                 if (VIEW == VIEW_OVERLAP) {

@@ -26,13 +26,16 @@ std::string tile(const std::string& value, std::string_view meaning, std::string
                        reached ? "good" : "short", escape_markup(value), escape_markup(meaning), escape_markup(goal));
 }
 
+constexpr uint32_t kGoalPasses = 1024;
+
 std::string compile_tiles(const GraphReport& report) {
     std::string tiles;
     for (const CompileResult* result : typical_results(report)) {
         if (result->family != "layered") continue;
         const double ns = result->compile_ns.median / result->passes;
         tiles += tile(fmt::format("{:.0f} ns", ns), fmt::format("a pass to compile {} passes, layered", result->passes),
-                      "goal: at most 1000", ns <= 1000);
+                      result->passes == kGoalPasses ? "goal: at most 1000" : "the goal is of 1,024 passes",
+                      result->passes != kGoalPasses || ns <= 1000);
         const double hit_us = result->cache_hit_ns.median / 1000;
         tiles += tile(fmt::format("{:.1f} us", hit_us), "to find that it is compiled already", "goal: below 10",
                       hit_us < 10);
@@ -122,6 +125,20 @@ std::string record_section(const GraphReport& report) {
            "</section>\n";
 }
 
+std::string record_growth_section(const GraphReport& report) {
+    if (report.record_growth.empty()) return "";
+    std::vector<std::vector<std::string>> rows;
+    for (const RecordGrowthResult& result : report.record_growth) {
+        rows.push_back({fmt::format("{} {}", result.family, result.passes), fmt::format("{}", result.render_passes),
+                        fmt::format("{}", result.barriers), fmt::format("{:.1f}", result.record_us.median),
+                        fmt::format("{:.0f}", result.record_us.median * 1000 / result.passes),
+                        fmt::format("{:.1f}", result.hit_us.median)});
+    }
+    return "<section>\n<h2>Recording against size</h2>\n<p class=\"caption\">Passes that record nothing of their own: "
+           "what the graph adds. A hit finds the plan of a graph declared anew.</p>\n" +
+           table({"graph", "render passes", "barriers", "us", "ns a pass", "hit, us"}, rows) + "</section>\n";
+}
+
 std::string example_sections(const GraphReport& report) {
     std::string text;
     for (const ExampleGraph& example : report.examples) {
@@ -160,7 +177,7 @@ std::string report_html(const GraphReport& report) {
                    "The lower bound is the most that is alive at once. The worst of the seeds; dashed: the goal, 1.10.",
                    draw_memory(report));
     page += example_sections(report);
-    page += device_section(report) + record_section(report);
+    page += device_section(report) + record_growth_section(report) + record_section(report);
     return page + "</main>\n</body>\n</html>\n";
 }
 

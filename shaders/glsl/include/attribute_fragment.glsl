@@ -19,10 +19,11 @@ AttributeFragment attribute_fragment(vec2 pixel, vec4 anchor_g, vec4 plane_map, 
     const vec3 conic = conic_weight.xyz;
     // x^T V^-1 x / 2. The affine ellipse holds the disk except where perspective bends it; there the disk itself takes
     // over, so that no pixel that the visibility pass wrote is left without a weight.
-    float exponent = 0.5 * (conic.x * d.x * d.x + 2 * conic.y * d.x * d.y + conic.z * d.y * d.y);
-    fragment.reached = hit.on_disk || hit.beside_disk || (exponent < 1 && !hit.cut_off);
-    exponent = min(min(exponent, hit.distance2), 1);
-    fragment.weight = conic_weight.w * (hit.beside_disk ? BESIDE_WEIGHT : exp(-exponent));
+    float exponent = KERNEL_MOMENT * (conic.x * d.x * d.x + 2 * conic.y * d.x * d.y + conic.z * d.y * d.y);
+    fragment.reached = hit.on_disk || hit.beside_disk || (exponent < KERNEL_SUPPORT2 && !hit.cut_off);
+    exponent = min(min(exponent, hit.distance2), KERNEL_SUPPORT2);
+    const float share = KERNEL == KERNEL_DISK ? exp(-exponent) : other_kernel(exponent);
+    fragment.weight = conic_weight.w * (hit.beside_disk ? BESIDE_WEIGHT : share);
     // Tested against the pushed-back depth of the visibility pass. Beyond the disk its plane may be anywhere.
     const float rise = abs(rise_offset.x);
     fragment.depth = clamp(hit.depth, anchor_depth - rise, anchor_depth + rise);

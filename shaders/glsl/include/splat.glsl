@@ -60,6 +60,26 @@ const float PREFILTER = 0.3;
 const float PREFILTER_REACH = 2;  // pixels by which a splat or a speck's pixel exceeds the disk, and some
 const float NOWHERE = 1e18;
 
+// engine/scene/kernel.h. The default is a Gaussian of variance 1/2, cut at the rim.
+layout(constant_id = 5) const uint KERNEL = 0;
+layout(constant_id = 6) const float KERNEL_SUPPORT = 1;
+layout(constant_id = 7) const float KERNEL_MOMENT = 0.5;
+layout(constant_id = 8) const float KERNEL_A = 0;
+layout(constant_id = 9) const float KERNEL_N = 0;
+const uint KERNEL_DISK = 0;
+const uint KERNEL_GAUSSIAN = 1;
+const uint KERNEL_CONFETTI = 2;
+#define KERNEL_SUPPORT2 (KERNEL_SUPPORT * KERNEL_SUPPORT)
+
+// At a squared distance from the centre, in radii, of another kernel than the default.
+float other_kernel(float distance2) {
+    if (KERNEL == KERNEL_GAUSSIAN) return exp(-KERNEL_A * distance2);
+    if (KERNEL != KERNEL_CONFETTI) return 1;
+    const float share = min(pow(distance2 / KERNEL_SUPPORT2, 0.5 * KERNEL_N), 0.999);
+    // A pixel that no heavier splat reaches still needs a weight.
+    return max(exp(-KERNEL_A * share / (1 - share)), 1e-6);
+}
+
 // preprocess/model_format/tangent_frame.h computes the same.
 void tangents_of(vec3 n, out vec3 s, out vec3 t) {
     // Duff et al. 2017, "Building an orthonormal basis, revisited".
@@ -87,14 +107,18 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
 }
 
 const vec3 NO_CLIP = vec3(0, 0, 1);
+// A cut ends where triangles begin, whose corners the rasteriser moves by up to half a 256th of a pixel: a cut reaches a
+// hair farther, or the pixels whose centres lie in between would show neither.
+const float CLIP_SLACK = 1.0 / 128.0;  // pixels
 
 // The disk is kept where clip.xy . (u, v) <= clip.z; times e, that is l.d + l0 <= 0. Returns l, l0 and what the change of
 // that a radius along the normal takes.
 vec4 clip_line(vec3 clip, Splat splat) {
-    const vec2 l = vec2(dot(clip.xy, splat.plane_map.xy), dot(clip.xy, splat.plane_map.zw));
+    vec2 l = vec2(dot(clip.xy, splat.plane_map.xy), dot(clip.xy, splat.plane_map.zw));
     const float l0 = dot(clip.xy, splat.plane_offset) - clip.z;
     const float skewed = dot(clip.xy, splat.skew.xy);
-    return ORTHOGRAPHIC ? vec4(l, l0, skewed) : vec4(l + l0 * splat.g, l0, clip.z + skewed);
+    if (!ORTHOGRAPHIC) l += l0 * splat.g;
+    return vec4(l, l0 - CLIP_SLACK * length(l), ORTHOGRAPHIC ? skewed : clip.z + skewed);
 }
 
 // `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` along s and `epsilon` in world units; the
@@ -164,20 +188,21 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ra
         splat.disk_bounds =
             frame.viewport.xyxy * 0.5 + frame.pixel_scale * (vec4(x.x, y.x, x.y, y.y) + vec4(-faces, faces));
     }
-    if (frame.prefilter == 0) {
+    if (frame.prefilter == 0 && KERNEL_SUPPORT <= 1) {
         splat.conic = vec3(NOWHERE, 0, NOWHERE);
         splat.weight = 1;
         splat.splat_bounds = splat.disk_bounds;
         return true;
     }
-    // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1.
-    const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * 0.5 + PREFILTER * vec3(1, 0, 1);
+    // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1; of other kernels with their moment and support.
+    const float filtered = frame.prefilter == 0 ? 1e-4 : PREFILTER;
+    const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * KERNEL_MOMENT + filtered * vec3(1, 0, 1);
     const float determinant = v.x * v.z - v.y * v.y;
     splat.conic = vec3(v.z, -v.y, v.x) / determinant;
     // A Gaussian of height 1 on the surface, filtered by the pixel's of volume 1: sqrt(|J V_r J^T| / |V|). Splats
     // smaller than a pixel count by the area they cover.
-    splat.weight = max(0.5 * abs(jx.x * jy.y - jx.y * jy.x) * inversesqrt(determinant), MIN_WEIGHT);
-    const vec2 extent = sqrt(2 * vec2(v.x, v.z));
+    splat.weight = max(KERNEL_MOMENT * abs(jx.x * jy.y - jx.y * jy.x) * inversesqrt(determinant), MIN_WEIGHT);
+    const vec2 extent = sqrt(KERNEL_SUPPORT2 / KERNEL_MOMENT * vec2(v.x, v.z));
     splat.splat_bounds = vec4(min(splat.disk_bounds.xy, splat.anchor - extent),
                               max(splat.disk_bounds.zw, splat.anchor + extent));
     return true;

@@ -87,18 +87,20 @@ struct SplatFilter {
     float weight;
 };
 
-// What make_splat computes, from the inverse A of its J: V = J J^T / 2 + p I, J J^T = S^-1 with S = A^T A, and with
+// What make_splat computes, from the inverse A of its J: V = J J^T / 2 + p I (1/2 the kernel's moment), J J^T = S^-1 with S = A^T A, and with
 // Q = |S| |V| both V^-1 = (S / 2 + p |S| I) / Q and |J| / (2 sqrt|V|) = 1 / (2 sqrt Q) need no division by |S|.
 SplatFilter filter_of(SplatPlane splat) {
-    if (frame.prefilter == 0) return SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
+    if (frame.prefilter == 0 && KERNEL_SUPPORT <= 1) return SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
+    const float filtered = frame.prefilter == 0 ? 1e-4 : PREFILTER;
     const vec4 a = splat.plane_map;
     const vec3 s = vec3(dot(a.xy, a.xy), dot(a.xy, a.zw), dot(a.zw, a.zw));
     const float area = a.x * a.w - a.y * a.z, determinant = area * area;
-    const float q = 0.25 + 0.5 * PREFILTER * (s.x + s.z) + PREFILTER * PREFILTER * determinant;
+    const float q = KERNEL_MOMENT * KERNEL_MOMENT + KERNEL_MOMENT * filtered * (s.x + s.z) +
+                    filtered * filtered * determinant;
     const bool near = (splat.marks & MARK_NEAR) != 0;
     SplatFilter result;
-    result.conic = (0.5 * s + PREFILTER * determinant * vec3(1, 0, 1)) / q;
-    result.weight = max(0.5 * inversesqrt(q), MIN_WEIGHT);
+    result.conic = (KERNEL_MOMENT * s + filtered * determinant * vec3(1, 0, 1)) / q;
+    result.weight = max(KERNEL_MOMENT * inversesqrt(q), MIN_WEIGHT);
     if (near) result = SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);
     return result;
 }

@@ -3,6 +3,7 @@
 #include "engine/bench/bench_bake.h"
 #include "engine/bench/bench_frame.h"
 #include "engine/bench/bench_quality.h"
+#include "engine/bench/confetti_command.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
 #include "engine/scene/scene_file.h"
@@ -153,7 +154,15 @@ int run(int argc, char** argv) {
     quality_command.folder = default_folder();
     const CLI::App& quality = bench::add_quality_command(app, quality_command);
 
+    bench::ConfettiCommand confetti_command;
+    confetti_command.folder = default_folder();
+    const CLI::App& confetti = bench::add_confetti_command(app, confetti_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (confetti.parsed()) {
+        bench::run_confetti_command(confetti_command);
+        return 0;
+    }
     if (quality.parsed()) {
         bench::run_quality_command(quality_command);
         return 0;

@@ -74,7 +74,8 @@ struct PassTime {
 struct CutStats {
     double tau = 0;  // pixels; 0: nothing was chosen
     CutStatistics counts;
-    double select_ms = 0;  // of the host: culling and choosing; gathering what was chosen
+    double predicted_ms = 0;  // of the frame, by the cost model (engine/scene/draw_costs.h)
+    double select_ms = 0;     // of the host: culling and choosing; gathering what was chosen
     double gather_ms = 0;
 };
 

@@ -254,9 +254,10 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_option("--antialias", raw.antialias,
                    "N x N samples a pixel, 1 to 8, default 1: outlines are smooth and stay in place; slower")
         ->option_text("N");
-    app.add_option("--kernel", raw.kernel,
-                   "How a splat's weight falls off from its centre; default: a Gaussian that ends at its rim. Published: "
-                   "gaussian:0.3, 0.5, 0.8; confetti:1,1.5,2, 6,1.5,3, 4,1.5,5")
+    app.add_option(
+           "--kernel", raw.kernel,
+           "How a splat's weight falls off from its centre; default: a Gaussian that ends at its rim. Published: "
+           "gaussian:0.3, 0.5, 0.8; confetti:1,1.5,2, 6,1.5,3, 4,1.5,5")
         ->option_text("gaussian:SIGMA|confetti:A,B,N|constant");
     app.add_option("--tau", raw.tau,
                    "Level of detail: how many pixels what is drawn may reach beyond its place, 0 to 1000; default 0, "

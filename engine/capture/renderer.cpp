@@ -152,7 +152,8 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     if (!stats) return;
     stats->frame_ms = milliseconds(start, Clock::now());
     if (settings.tau > 0)
-        stats->cut = {settings.tau, draws.cut, milliseconds(start, selected), milliseconds(selected, gathered)};
+        stats->cut = {settings.tau, draws.cut, draws.predicted_ms, milliseconds(start, selected),
+                      milliseconds(selected, gathered)};
     for (const graph::PassTiming& timing : executor.timings())
         stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
     stats->backend = backend;

@@ -25,6 +25,8 @@ nlohmann::ordered_json json_of(const CutStats& cut) {
     json["ellipses"] = cut.counts.ellipses;
     json["merged_surfels"] = cut.counts.merged_surfels;
     json["surfels"] = cut.counts.surfels;
+    json["patches_by_triangles"] = cut.counts.patches_by_triangles;
+    json["predicted_ms"] = cut.predicted_ms;
     json["select_ms"] = cut.select_ms;
     json["gather_ms"] = cut.gather_ms;
     return json;

@@ -98,14 +98,15 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting, 
 }
 
 FrameVariant frame_variant(const FrameSettings& settings) {
-    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u, is_deferred(settings), settings.kernel};
+    return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u, is_deferred(settings),
+            settings.kernel};
 }
 
 std::map<std::uint32_t, std::uint32_t> frame_constants(const FrameSettings& settings) {
     const FrameVariant variant = frame_variant(settings);
     const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
     const Kernel& kernel = variant.kernel;
-    return {{1, variant.view},           {2, variant.orthographic}, {5, static_cast<std::uint32_t>(kernel.shape)},
+    return {{1, variant.view},         {2, variant.orthographic}, {5, static_cast<std::uint32_t>(kernel.shape)},
             {6, bits(kernel.support)}, {7, bits(kernel.moment)},  {8, bits(kernel.a)},
             {9, bits(kernel.n)}};
 }

@@ -65,8 +65,8 @@ class Gathering {
                 in_place.push_back({.first = run.first, .count = run.count});
                 continue;
             }
-            pieces_.push_back({(run.inner ? ellipses : surfels).subspan(run.first, run.count), count_, run.level,
-                               run.inner});
+            pieces_.push_back(
+                {(run.inner ? ellipses : surfels).subspan(run.first, run.count), count_, run.level, run.inner});
             count_ += run.count;
             range.count += run.count;
         }

@@ -1,5 +1,6 @@
 // What the cuts of a frame chose, on the device: short runs of surfels and single ellipses are gathered into one buffer
-// that is written anew each frame, so that no cut takes more than a few draws; long runs of surfels stay where they are.
+// that is written anew each frame, so that no cut takes more than a few draws; long runs of surfels stay where they
+// are.
 #pragma once
 
 #include "engine/scene/draw_list.h"
@@ -15,8 +16,8 @@ class CutStore {
     explicit CutStore(gpu::Device& device) : device_(device) {}
 
     /// Makes ranges of the cuts of all instances. They are of this store, and hold until the next call. With
-    /// `levels`, ellipses name their level in the tree, counted from 1, instead of their patch. No submitted work may still use the
-    /// frame before.
+    /// `levels`, ellipses name their level in the tree, counted from 1, instead of their patch. No submitted work may
+    /// still use the frame before.
     void gather(DrawList& draws, bool levels);
 
   private:

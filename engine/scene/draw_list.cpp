@@ -12,6 +12,9 @@ namespace splice {
 
 namespace {
 
+// The error of a level of triangles is a root mean square: somewhere they are this many times as far off, about.
+constexpr double kWorstOfError = 4;
+
 enum class Containment { kOutside, kPartly, kInside };
 
 template <typename T>
@@ -30,7 +33,7 @@ class Culler {
 
     void visit_all() {
         const auto& octree = draws_.model->octree();
-        if (cuts()) draws_.cut = cut_points(draws_.model->hierarchy(), cut_view());
+        if (cuts()) cut();
         if (octree.empty()) {
             visit_patches(0, static_cast<std::uint32_t>(draws_.model->patches().size()));
         } else {
@@ -50,7 +53,42 @@ class Culler {
                !draws_.model->hierarchy().empty();
     }
 
-    CutView cut_view() const {
+    void cut() {
+        const std::vector<double> costs = triangle_costs();
+        draws_.cut = cut_points(draws_.model->hierarchy(), cut_view(costs));
+        by_triangles_.assign(draws_.model->patches().size(), false);
+        for (const std::uint32_t patch : draws_.cut.triangle_patches)
+            by_triangles_[patch] = true;
+    }
+
+    // Of each surfel patch, CutView::triangle_costs.
+    std::vector<double> triangle_costs() const {
+        std::vector<double> costs;
+        if (!options_.draw_triangles) return costs;
+        const DrawCosts& price = options_.costs;
+        costs.resize(draws_.model->patches().size(), std::numeric_limits<double>::infinity());
+        for (std::size_t i = 0; i < costs.size(); ++i) {
+            const format::Patch& patch = draws_.model->patches()[i];
+            if (patch.surfel_count == 0) continue;
+            const Extent extent = locate(patch.bounds_min, patch.bounds_max);
+            if (extent.containment == Containment::kOutside) continue;
+            const double triangles = level_of(patch, extent.nearest).index_count / 3;
+            if (triangles == 0) continue;  // a cloud's
+            costs[i] = (price.triangle * triangles +
+                        (price.triangle_pixel - price.splat_pixel) * pixels_of(patch, extent.nearest)) /
+                       price.splat;
+        }
+        return costs;
+    }
+
+    // Of a surface that is turned every way, half of the patch's area as it is seen face on.
+    double pixels_of(const format::Patch& patch, double nearest) const {
+        const double unit = scale_ * draws_.scale / (camera_.orthographic ? 1 : std::max(nearest, camera_.near_plane));
+        const double all = 4 * half_x_ * half_y_ * scale_ * scale_;
+        return std::min(0.5 * static_cast<double>(patch.area) * unit * unit, all);
+    }
+
+    CutView cut_view(std::span<const double> costs) const {
         return {.model_to_view = draws_.model_to_view,
                 .scale = draws_.scale,
                 .orthographic = camera_.orthographic,
@@ -60,7 +98,8 @@ class Culler {
                 .near_plane = camera_.near_plane,
                 .two_sided = draws_.two_sided,
                 .tau = options_.tau,
-                .max_point_size = options_.force_quads ? 0 : options_.max_point_size};
+                .max_point_size = options_.force_quads ? 0 : options_.max_point_size,
+                .triangle_costs = costs};
     }
 
     // The coarsest triangles whose error is within tau wherever in the patch it is.
@@ -71,7 +110,7 @@ class Culler {
         const double pixels = scale_ * draws_.scale * stretch;
         for (std::uint32_t next = 1; next < patch.lod_count; ++next) {
             const format::Lod& coarser = draws_.model->lods()[patch.first_lod + next];
-            if (static_cast<double>(coarser.error) * pixels > options_.tau) break;
+            if (kWorstOfError * static_cast<double>(coarser.error) * pixels > options_.tau) break;
             level = &coarser;
         }
         return *level;
@@ -152,8 +191,9 @@ class Culler {
 
     void visit_patch(std::uint32_t index) {
         const format::Patch& patch = draws_.model->patches()[index];
-        const bool triangles =
-            options_.surfels_as_triangles || patch.representation == format::Representation::kTriangles;
+        const bool triangles = options_.surfels_as_triangles ||
+                               patch.representation == format::Representation::kTriangles ||
+                               (!by_triangles_.empty() && by_triangles_[index]);
         if (!(triangles ? options_.draw_triangles : options_.draw_surfels && !cuts())) return;
         const Extent extent = locate(patch.bounds_min, patch.bounds_max);
         if (extent.containment == Containment::kOutside) return;
@@ -193,8 +233,9 @@ class Culler {
     const Camera& camera_;
     const DrawListOptions& options_;
     InstanceDraws& draws_;
-    double scale_;            // pixels per unit at depth 1, or anywhere
-    double half_x_, half_y_;  // of the picture, at depth 1 or anywhere
+    double scale_;                    // pixels per unit at depth 1, or anywhere
+    double half_x_, half_y_;          // of the picture, at depth 1 or anywhere
+    std::vector<bool> by_triangles_;  // surfel patches, where the cut chose
 };
 
 }  // namespace
@@ -229,6 +270,10 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
         list.surfels += draws.cut.statistics.ellipses + draws.cut.statistics.surfels;
         list.instances.push_back(std::move(draws));
     }
+    if (options.tau > 0)
+        list.predicted_ms = 1e-3 * (options.costs.triangle * static_cast<double>(list.triangles) +
+                                    options.costs.splat * static_cast<double>(list.surfels) +
+                                    options.costs.frame_pixel * width * height);
     return list;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/scene/camera.h"
+#include "engine/scene/draw_costs.h"
 #include "engine/scene/lod_cut.h"
 #include "engine/scene/named.h"
 #include "engine/scene/scene.h"
@@ -43,6 +44,7 @@ struct DrawList {
     std::vector<InstanceDraws> instances;
     std::uint64_t triangles = 0, surfels = 0;  // ellipses are surfels, too
     CutStatistics cut;                         // of all instances
+    double predicted_ms = 0;                   // with tau: what DrawListOptions::costs make of it
 };
 
 enum class Sides { kAsBaked, kOneSided, kTwoSided };
@@ -60,8 +62,9 @@ struct DrawListOptions {
     bool surfels_as_triangles = false;  // surfel patches by their triangles
     bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
-    double max_point_size = 255;  // pixels, of the device
-    double tau = 0;               // pixels by which what is drawn may be off; 0: full detail
+    double max_point_size = 255;       // pixels, of the device
+    double tau = 0;                    // pixels, of the cut (lod_cut.h); 0: full detail
+    DrawCosts costs = kSoftwareCosts;  // with tau: surfel patches are drawn by their triangles where those cost less
 };
 
 DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,

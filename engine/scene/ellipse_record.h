@@ -1,5 +1,5 @@
-// A node of the point tree as a record that every surfel pass reads: format::Surfel with two fields read in another way,
-// so that ellipses and disks stand side by side in one buffer.
+// A node of the point tree as a record that every surfel pass reads: format::Surfel with two fields read in another
+// way, so that ellipses and disks stand side by side in one buffer.
 //   radius  below 0: an ellipse, whose major half axis is its absolute value
 //   clip    of an ellipse, its axes: bits 0..7 the direction of the major one, in 256ths of half a turn from s to t
 //           (tangents_of(normal)); bits 8..15 minor over major, in 255ths

@@ -59,7 +59,7 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
       patches_(model.patches.begin(), model.patches.end()),
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
-      hierarchy_(point_hierarchy(model.point_tree, model.info->max_surfel_radius)),
+      hierarchy_(point_hierarchy(model.point_tree, model.patches, model.info->max_surfel_radius)),
       surfels_(device, model.surfels.size(), gpu::MemoryUse::device, "surfels"),
       pool_(device) {
     const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes) {

@@ -1,6 +1,7 @@
 // How much a splat weighs at r radii from its centre (Pajarola et al. 2004, section 5.2).
 //   gaussian:SIGMA    exp(-r^2 / 2 sigma^2)                        equation (9); the paper's: 0.3, 0.5, 0.8
-//   confetti:A,B,N    exp(-a (r/b)^n / (1 - (r/b)^n)) below b      equation (10), whose (r - b)^n is a slip for (r/b)^n;
+//   confetti:A,B,N    exp(-a (r/b)^n / (1 - (r/b)^n)) below b      equation (10), whose (r - b)^n is a slip for
+//   (r/b)^n;
 //                     the paper's: 1,1.5,2  6,1.5,3  4,1.5,5
 //   constant          1 on the disk
 // Nothing beyond `support` counts. The default is a Gaussian cut at the disk's rim.

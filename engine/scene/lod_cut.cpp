@@ -36,7 +36,8 @@ double cosine_at_most(double angle) {
 struct Visit {
     std::uint32_t node;
     std::uint32_t level;
-    bool inside;  // its disks are wholly in the frustum
+    bool inside;          // its disks are wholly in the frustum
+    bool chosen = false;  // a patch of which surfels are to be drawn
 };
 
 class Walk {
@@ -68,11 +69,11 @@ class Walk {
         while (!stack.empty()) {
             const Visit visit = stack.back();
             stack.pop_back();
-            Visit below = visit;
-            if (!decide(visit, below.inside, cut)) continue;
+            bool inside = false;
+            if (!decide(visit, inside, cut)) continue;
             const format::PointNode& node = hierarchy_.nodes[visit.node];
             for (std::uint32_t child = node.child_count; child-- > 0;)
-                stack.push_back({node.first_child + child, visit.level + 1, below.inside});
+                stack.push_back({node.first_child + child, visit.level + 1, inside});
         }
     }
 
@@ -101,12 +102,16 @@ class Walk {
             append(cut, {visit.node, 1, true, fits_point(inside, radius, depth - radius), visit.level});
             return false;
         }
+        if (!visit.chosen && !view_.triangle_costs.empty() && hierarchy_.patch[visit.node] != kNoPatch) {
+            choose(visit, cut);
+            return false;
+        }
         const double reach = std::min(radius, static_cast<double>(hierarchy_.largest_radius));
         const bool fits = fits_point(inside, reach, depth - radius);
         // Where nothing below is small enough from anywhere, either, there is nothing left to decide.
-        const bool full = inside && fits && (view_.two_sided || node.surfel_count <= kHardlyAway) &&
-                          static_cast<double>(hierarchy_.finest[visit.node]) * pixels_at_farthest(depth + radius) >
-                              view_.tau;
+        const bool full =
+            inside && fits && (view_.two_sided || node.surfel_count <= kHardlyAway) &&
+            static_cast<double>(hierarchy_.finest[visit.node]) * pixels_at_farthest(depth + radius) > view_.tau;
         if (!full && node.child_count != 0) return true;
         cut.statistics.surfels += node.surfel_count;
         append(cut, {node.first_surfel, node.surfel_count, false, fits, 0});
@@ -114,6 +119,28 @@ class Walk {
     }
 
   private:
+    // Triangles or surfels for the patch of a node.
+    void choose(const Visit& visit, LodCut& cut) const {
+        const std::uint32_t patch = hierarchy_.patch[visit.node];
+        const double cost = view_.triangle_costs[patch];
+        LodCut own;
+        const bool clear = cost < 1;  // surfels would be one at least
+        if (!clear) {
+            run({visit.node, visit.level, visit.inside, true}, own);
+            --own.statistics.visited;  // twice the patch itself
+        }
+        const CutStatistics& counts = own.statistics;
+        if (!clear && cost >= static_cast<double>(counts.ellipses + counts.surfels)) {
+            for (const CutRun& run : own.runs)
+                append(cut, run);
+            cut.statistics += counts;
+            return;
+        }
+        cut.triangle_patches.push_back(patch);
+        cut.statistics.visited += counts.visited;
+        ++cut.statistics.patches_by_triangles;
+    }
+
     bool outside(const glm::dvec3& centre, double depth, double radius, bool& inside) const {
         const double slack = slack_ * (view_.orthographic ? 1 : std::max(depth + radius, 0.0));
         double farthest = near_ - depth;
@@ -194,6 +221,7 @@ CutStatistics& CutStatistics::operator+=(const CutStatistics& other) {
     ellipses += other.ellipses;
     merged_surfels += other.merged_surfels;
     surfels += other.surfels;
+    patches_by_triangles += other.patches_by_triangles;
     return *this;
 }
 
@@ -201,7 +229,8 @@ float extent_of(const format::PointNode& node) {
     return std::max(node.major, node.sphere_radius);
 }
 
-PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, float largest_radius) {
+PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
+                               float largest_radius) {
     PointHierarchy hierarchy;
     hierarchy.nodes.assign(nodes.begin(), nodes.end());
     hierarchy.largest_radius = largest_radius;
@@ -212,6 +241,20 @@ PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, float l
         for (std::uint32_t child = 0; child < node.child_count; ++child)
             finest = std::min(finest, hierarchy.finest[node.first_child + child]);
         hierarchy.finest[i] = finest;
+    }
+    hierarchy.patch.assign(nodes.size(), kNoPatch);
+    // Breadth first, so that of nodes with the same surfels the uppermost is found.
+    std::vector<bool> found(patches.size(), false);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto next = std::upper_bound(
+            patches.begin(), patches.end(), nodes[i].first_surfel,
+            [](std::uint64_t surfel, const format::Patch& p) { return surfel < p.first_surfel + p.surfel_count; });
+        if (next == patches.end() || next->first_surfel != nodes[i].first_surfel ||
+            next->surfel_count != nodes[i].surfel_count)
+            continue;
+        const auto patch = static_cast<std::size_t>(next - patches.begin());
+        if (!found[patch]) hierarchy.patch[i] = static_cast<std::uint32_t>(patch);
+        found[patch] = true;
     }
     return hierarchy;
 }
@@ -254,6 +297,8 @@ LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view) {
     cut.runs.reserve(runs);
     for (const Task& task : tasks) {
         cut.runs.insert(cut.runs.end(), task.before.runs.begin(), task.before.runs.end());
+        cut.triangle_patches.insert(cut.triangle_patches.end(), task.before.triangle_patches.begin(),
+                                    task.before.triangle_patches.end());
         cut.statistics += task.before.statistics;
     }
     return cut;

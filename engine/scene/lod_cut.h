@@ -1,12 +1,12 @@
-// The choice of a frame's level of detail (Pajarola et al. 2004, section 6.2): a cut through a point tree, made of nodes
-// that are drawn as one elliptical splat each and of surfels, so that every surfel that may be seen is in it once,
-// itself or in one node above it.
+// The choice of a frame's level of detail (Pajarola et al. 2004, section 6.2): a cut through a point tree, made of
+// nodes that are drawn as one elliptical splat each and of surfels, so that every surfel that may be seen is in it
+// once, itself or in one node above it.
 //
 // With two corrections and one change. A node faces away if its normals do from everywhere in its sphere, not only from
 // its centre; tilt does not shrink a node, whose length across the view stays. What is bounded is not the area of a
-// projected ellipse as a share of the picture but its half length in pixels: nothing is drawn farther than `tau` from the
-// middle of what it stands for, and a long thin ellipse does not pass. At 1 the ellipse's Gaussian (a standard deviation
-// of 0.7 pixels) is hardly wider than the prefilter's (0.55).
+// projected ellipse as a share of the picture but its half length in pixels: nothing is drawn farther than `tau` from
+// the middle of what it stands for, and a long thin ellipse does not pass. At 1 the ellipse's Gaussian (a standard
+// deviation of 0.7 pixels) is hardly wider than the prefilter's (0.55).
 #pragma once
 
 #include "preprocess/model_format/model_format.h"
@@ -23,12 +23,16 @@ namespace splice {
 struct PointHierarchy {
     std::vector<format::PointNode> nodes;  // breadth first
     std::vector<float> finest;             // of each node, the smallest extent (see extent_of) in its subtree
+    std::vector<std::uint32_t> patch;      // the patch that a node stands for, the whole and nothing else; or kNoPatch
     float largest_radius = 0;              // of the model's surfels, unit-box units
 
     bool empty() const { return nodes.empty(); }
 };
 
-PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, float largest_radius);
+inline constexpr std::uint32_t kNoPatch = 0xffffffffu;
+
+PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
+                               float largest_radius);
 
 /// What is projected and compared with tau: half of what a node is long, whichever way; unit-box units.
 float extent_of(const format::PointNode& node);
@@ -44,6 +48,9 @@ struct CutView {
     bool two_sided = false;         // nothing is left out because of its normals
     double tau = 1;                 // pixels, above 0: see above
     double max_point_size = 255;    // pixels; see CutRun::fits_point
+    // By how much drawing a patch's triangles costs more than drawing no surfel of it, in splats; empty: no patch is
+    // drawn by its triangles.
+    std::span<const double> triangle_costs;
 };
 
 /// Consecutive surfels, or nodes, of the model.
@@ -61,15 +68,18 @@ struct CutStatistics {
     std::uint64_t ellipses = 0;                          // nodes that are drawn in place of what is below them
     std::uint64_t merged_surfels = 0;                    // those below them
     std::uint64_t surfels = 0;                           // drawn themselves
+    std::uint64_t patches_by_triangles = 0;              // surfel patches whose triangles cost less
     CutStatistics& operator+=(const CutStatistics& other);
     friend bool operator==(const CutStatistics&, const CutStatistics&) = default;
 };
 
 struct LodCut {
-    std::vector<CutRun> runs;  // in the order of the surfels they stand for
+    std::vector<CutRun> runs;                     // in the order of the surfels they stand for
+    std::vector<std::uint32_t> triangle_patches;  // surfel patches that are in the cut by their triangles
     CutStatistics statistics;
 };
 
+/// Where the cut reaches a patch, its triangles take the place of what it would have of it if they cost less.
 /// Deterministic for any thread count.
 LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view);
 

@@ -1,4 +1,5 @@
-// What shaders draw beyond a surfel's disk and its horizon: whatever decides that something cannot be seen allows for it.
+// What shaders draw beyond a surfel's disk and its horizon: whatever decides that something cannot be seen allows for
+// it.
 #pragma once
 
 #include <numbers>
@@ -12,8 +13,8 @@ inline constexpr double kHorizon = -0.25;
 /// Pixels by which a splat may exceed its disk: sqrt(0.6) of the prefilter, up to 1 of a speck's pixel, and rounding.
 inline constexpr double kPrefilterReach = 1.5;
 
-/// Radii from a disk's centre to the rim of its solid's faces, at most: the surface leaves the plane by at most a radius
-/// (surfel_extent.h).
+/// Radii from a disk's centre to the rim of its solid's faces, at most: the surface leaves the plane by at most a
+/// radius (surfel_extent.h).
 inline constexpr double kSolidReach = std::numbers::sqrt2;
 
 }  // namespace splice

@@ -8,7 +8,8 @@ namespace splice {
 
 namespace {
 
-// Synchronisation validation (1.3.239) takes the four vertices of an instance for four records of the instance's buffer.
+// Synchronisation validation (1.3.239) takes the four vertices of an instance for four records of the instance's
+// buffer.
 constexpr std::uint64_t kPadding = 3;
 
 gpu::BufferOptions buffer_options(std::uint64_t surfels, gpu::MemoryUse memory, const std::string& name) {

@@ -91,8 +91,7 @@ class PatchSplitter {
             node.first_surfel = static_cast<std::uint32_t>(patches_[source.index].first_surfel) + own.first_surfel;
             node.surfel_count = own.surfel_count;
         } else {
-            node.first_surfel =
-                static_cast<std::uint32_t>(patches_[octree_[source.index].first_patch].first_surfel);
+            node.first_surfel = static_cast<std::uint32_t>(patches_[octree_[source.index].first_patch].first_surfel);
             node.surfel_count = surfels_of(octree_[source.index]);
         }
         return node;

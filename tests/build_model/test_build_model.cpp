@@ -163,6 +163,23 @@ TEST_CASE("normal cones hold shading and face normals") {
     CHECK(narrow > 0);
 }
 
+TEST_CASE("each patch with surfels is a node of the point tree") {
+    const Model model = build(repaired(shapes::bumpy_sphere(20000)), mixed());
+    std::set<std::pair<std::uint64_t, std::uint32_t>> ranges;
+    for (const format::PointNode& node : model.point_tree) {
+        ranges.insert({node.first_surfel, node.surfel_count});
+        CHECK(node.child_count != 1);
+    }
+    std::size_t patches = 0;
+    for (const format::Patch& patch : model.patches) {
+        if (patch.surfel_count == 0) continue;
+        ++patches;
+        CHECK(ranges.count({patch.first_surfel, patch.surfel_count}) == 1);
+    }
+    CHECK(patches > 8);
+    CHECK(model.point_tree.front().surfel_count == model.surfels.size());
+}
+
 TEST_CASE("normals that point everywhere make an open cone") {
     const std::vector<Vec3f> normals = {Vec3f::UnitX(), -Vec3f::UnitX()};
     const NormalCone cone = enclose_normals(normals);

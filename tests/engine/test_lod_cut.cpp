@@ -52,7 +52,7 @@ Points bulging_sphere(std::size_t count) {
         largest = std::max(largest, float_from_half(surfel.radius));
         points.surfels.push_back(surfel);
     }
-    points.hierarchy = point_hierarchy(build_point_octree(points.surfels), largest);
+    points.hierarchy = point_hierarchy(build_point_octree(points.surfels), {}, largest);
     return points;
 }
 
@@ -110,8 +110,7 @@ TEST_CASE("a cut holds every surfel once, in order, whatever tau") {
             CHECK(cut.statistics.merged_surfels + cut.statistics.surfels == 20000);
             std::uint64_t next = 0;
             for (const CutRun& run : cut.runs) {
-                const std::uint32_t first =
-                    run.inner ? points.hierarchy.nodes[run.first].first_surfel : run.first;
+                const std::uint32_t first = run.inner ? points.hierarchy.nodes[run.first].first_surfel : run.first;
                 CHECK(first == next);
                 const std::uint32_t last = run.first + run.count - 1;
                 next = run.inner ? points.hierarchy.nodes[last].first_surfel + points.hierarchy.nodes[last].surfel_count
@@ -132,8 +131,8 @@ TEST_CASE("what the picture shows is in the cut once, what it does not at most o
         std::size_t shown = 0, missing = 0;
         for (std::size_t i = 0; i < times.size(); ++i) {
             const glm::dvec3 p = in_view(view, vector_of(points.surfels[i].position));
-            const bool inside = -p.z > view.near_plane && std::abs(p.x) < -p.z * view.half_x &&
-                                std::abs(p.y) < -p.z * view.half_y;
+            const bool inside =
+                -p.z > view.near_plane && std::abs(p.x) < -p.z * view.half_x && std::abs(p.y) < -p.z * view.half_y;
             shown += inside;
             missing += inside && times[i] != 1;
         }
@@ -156,8 +155,8 @@ TEST_CASE("nothing that faces the eye is left out of a one-sided model") {
         for (std::size_t i = 0; i < times.size(); ++i) {
             const glm::dvec3 p = in_view(view, vector_of(points.surfels[i].position));
             const glm::dvec3 n = glm::dmat3(view.model_to_view) * normal_of(points.surfels[i].normal) / view.scale;
-            const bool inside = -p.z > view.near_plane && std::abs(p.x) < -p.z * view.half_x &&
-                                std::abs(p.y) < -p.z * view.half_y;
+            const bool inside =
+                -p.z > view.near_plane && std::abs(p.x) < -p.z * view.half_x && std::abs(p.y) < -p.z * view.half_y;
             missing += inside && glm::dot(n, glm::normalize(-p)) >= kHorizon && times[i] != 1;
         }
         CAPTURE(distance);
@@ -232,12 +231,14 @@ TEST_CASE("a tree that is one long branch is walked to its end") {
         nodes[i].child_count = i + 1 < nodes.size() ? 1 : 0;
         nodes[i].first_child = i + 1 < nodes.size() ? i + 1 : 0;
     }
-    CutView view = view_from(3, 1e-3);
-    view.two_sided = false;
-    const LodCut cut = cut_points(point_hierarchy(nodes, 0.1f), view);
+    // So small that what is above it does not end the walk.
+    nodes.back().sphere_radius = nodes.back().major = 1e-9f;
+    const CutView view = view_from(3, 1e-3);
+    const LodCut cut = cut_points(point_hierarchy(nodes, {}, 0.1f), view);
     CHECK(cut.statistics.visited == nodes.size());
     REQUIRE(cut.runs.size() == 1);
-    CHECK(cut.runs[0].count == 7);
+    CHECK(cut.runs[0].inner);
+    CHECK(cut.runs[0].first == nodes.size() - 1);
 }
 
 TEST_CASE("a node's record holds its ellipse, and hardly more") {
@@ -249,8 +250,8 @@ TEST_CASE("a node's record holds its ellipse, and hardly more") {
         const glm::dvec3 n = normal_of(node.normal);
         const glm::dvec3 across =
             glm::normalize(glm::cross(n, glm::dvec3(uniform(random), uniform(random), uniform(random))));
-        node.major_axis = encode_octahedral(static_cast<float>(across.x), static_cast<float>(across.y),
-                                            static_cast<float>(across.z));
+        node.major_axis =
+            encode_octahedral(static_cast<float>(across.x), static_cast<float>(across.y), static_cast<float>(across.z));
         node.major = 0.01f + 0.1f * std::abs(uniform(random));
         node.minor = node.major * (0.1f + 0.9f * std::abs(uniform(random)));
         const format::Surfel record = ellipse_record(node, 9);
@@ -266,8 +267,7 @@ TEST_CASE("a node's record holds its ellipse, and hardly more") {
             const double turn = i * std::numbers::pi / 64;
             const glm::dvec3 p = static_cast<double>(node.major) * std::cos(turn) * own_major +
                                  static_cast<double>(node.minor) * std::sin(turn) * own_minor;
-            farthest =
-                std::max(farthest, std::hypot(glm::dot(p, major) / axes.major, glm::dot(p, minor) / axes.minor));
+            farthest = std::max(farthest, std::hypot(glm::dot(p, major) / axes.major, glm::dot(p, minor) / axes.minor));
         }
         CHECK(farthest <= 1 + 1e-4);
         CHECK(axes.major <= 1.1 * static_cast<double>(node.major));

@@ -73,7 +73,8 @@ TilePasses::TilePasses(gpu::Device& device, const FrameData& data, std::uint64_t
                             {9, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
                             {10, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
                             {11, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
-                            {12, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute}}),
+                            {12, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                            {13, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute}}),
       layout_(device, std::array{data.layout().handle(), surfel_layout_.handle(), tile_layout_.handle()},
               sizeof(InstanceConstants), kCompute),
       setup_(device, tile_setup_comp, "tile_setup.comp"),
@@ -86,7 +87,7 @@ TilePasses::TilePasses(gpu::Device& device, const FrameData& data, std::uint64_t
 
 bool TilePasses::can_draw(const FrameSettings& settings) const {
     // The visibility view shows the depth buffer, which this backend does not write.
-    return supported_ && settings.view != View::kVisibility && !is_deferred(settings);
+    return supported_ && settings.view != View::kVisibility;
 }
 
 // Cuts what is to be drawn into batches that fit the buffers.
@@ -124,6 +125,7 @@ void TilePasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTarget
     handles_ = buffers_.import(graph, bindings);
     targets_ = targets;
     composes_ = composes(settings);
+    deferred_ = is_deferred(settings);
     segment_depth_ = graph.create_image(
         "tile_depth", {.format = VK_FORMAT_R32_SFLOAT, .width = settings.width, .height = settings.height});
     if (one_batch) {
@@ -179,9 +181,7 @@ void TilePasses::read_inputs(graph::Pass& pass, const FrameTargets& targets) con
 void TilePasses::add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
     graph::Pass pass = graph.add_pass("tile_gather", graph::PassKind::compute);
     read_inputs(pass, targets);
-    targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
-    segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
-    if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
+    write_outputs(pass, targets, settings, true);
     pass.record([this, &settings](const graph::PassContext& context) {
         bind(context, Stage::kGather, settings);
         vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileFusedDispatch);
@@ -193,19 +193,23 @@ void TilePasses::add_segments(graph::Graph& graph, FrameTargets& targets, const 
     graph::Pass pass = graph.add_pass("tile_segments", graph::PassKind::compute);
     read_inputs(pass, targets);
     const bool fresh = range.first && buffers_.uniforms().segmented != 0 && stages.front() == Stage::kSegmentVisibility;
-    if (fresh) {
-        targets.accumulation = pass.storage_write(targets.accumulation, graph::Contents::discard());
-        segment_depth_ = pass.storage_write(segment_depth_, graph::Contents::discard());
-        if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
-    } else {
-        targets.accumulation = pass.storage_read_write(targets.accumulation);
-        segment_depth_ = pass.storage_read_write(segment_depth_);
-        if (composes(settings)) targets.picture = pass.storage_write(targets.picture, graph::Contents::keep());
-    }
+    write_outputs(pass, targets, settings, fresh);
     pass.record([this, &settings, stages = std::move(stages), range](const graph::PassContext& context) {
         for (const Stage stage : stages)
             segment(context, settings, stage, range);
     });
+}
+
+void TilePasses::write_outputs(graph::Pass& pass, FrameTargets& targets, const FrameSettings& settings, bool fresh) {
+    const auto write = [&](graph::ImageHandle& image) {
+        image = fresh ? pass.storage_write(image, graph::Contents::discard()) : pass.storage_read_write(image);
+    };
+    write(targets.accumulation);
+    write(segment_depth_);
+    if (is_deferred(settings)) write(targets.normals);
+    if (composes(settings))
+        targets.picture =
+            pass.storage_write(targets.picture, fresh ? graph::Contents::discard() : graph::Contents::keep());
 }
 
 void TilePasses::setup(const graph::PassContext& context, const FrameSettings& settings, const Batch& batch) {
@@ -263,6 +267,7 @@ void TilePasses::bind(const graph::PassContext& context, Stage stage, const Fram
         std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
         constants[0] = program.part;
         constants[3] = composes(settings) ? 1u : 0u;
+        constants[5] = is_deferred(settings) ? 1u : 0u;
         pipeline = gpu::ComputePipeline(device_, {&program.shader, constants}, layout_.handle(), program.name);
     }
     vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
@@ -286,6 +291,7 @@ VkDescriptorSet TilePasses::tile_set(const graph::PassContext& context) {
         .storage_image(10, context.view(segment_depth_))
         .sampled_image(11, context.view(targets_.triangle_colour), sampler_.get())
         .storage_image(12, context.view(composes_ ? targets_.picture : targets_.accumulation))
+        .storage_image(13, context.view(deferred_ ? targets_.normals : targets_.accumulation))
         .write(device_);
     return sets_.set;
 }

@@ -22,10 +22,10 @@ class TilePasses {
 
     /// Whether the backend can draw this frame: the device's abilities, and the view.
     bool can_draw(const FrameSettings& settings) const;
-    /// Whether add() makes the picture; if not, the normalise pass does. Pictures of numbers and samples it leaves
-    /// alone.
+    /// Whether add() makes the picture; if not, the normalise pass does. Pictures of numbers and samples, and those
+    /// that are lit afterwards, it leaves alone.
     static bool composes(const FrameSettings& settings) {
-        return !is_numeric(settings.view) && settings.antialias == 1;
+        return !is_numeric(settings.view) && settings.antialias == 1 && !is_deferred(settings);
     }
     /// `draws` and `settings` must live until the graph has been executed. No submitted work may still use the frame
     /// before.
@@ -62,6 +62,8 @@ class TilePasses {
     void add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
                       std::vector<Stage> stages, Range range);
     void setup(const graph::PassContext& context, const FrameSettings& settings, const Batch& batch);
+    /// What every pass that gathers writes; `fresh`: nothing is there yet.
+    void write_outputs(graph::Pass& pass, FrameTargets& targets, const FrameSettings& settings, bool fresh);
     void segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Range range);
     void bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings);
     VkDescriptorSet tile_set(const graph::PassContext& context);
@@ -73,7 +75,7 @@ class TilePasses {
     TileBuffers buffers_;
     TileHandles handles_;
     FrameTargets targets_;
-    bool composes_ = false;
+    bool composes_ = false, deferred_ = false;
     graph::ImageHandle segment_depth_;
     std::vector<Batch> batches_;
     gpu::DescriptorSetLayout surfel_layout_, tile_layout_;

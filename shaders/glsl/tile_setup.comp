@@ -19,6 +19,8 @@
 
 layout(local_size_x = 8) in;
 
+layout(constant_id = 5) const bool DEFERRED = false;  // records have normals and albedos instead of lit colours
+
 layout(set = 1, binding = 0) uniform usamplerBuffer surfels;  // format::Surfel: two texels each
 layout(set = 2, binding = 1, rgba32ui) uniform writeonly uimageBuffer records;
 layout(set = 2, binding = 2, rg32ui) uniform writeonly uimageBuffer block_bounds;
@@ -89,7 +91,13 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
         if (drawn && all(lessThan(own.low, own.high))) {
             bounds = own;
             reaches = pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth));
-            const SurfelColour colour = surfel_colour(record, surfel);
+            SurfelColour colour;
+            if (DEFERRED) {
+                const SurfelNormals normals = surfel_normals(record, surfel);
+                colour = SurfelColour(normals.centre, normals.along_u, normals.along_v);
+            } else {
+                colour = surfel_colour(record, surfel);
+            }
             const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
             const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
             const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
@@ -108,10 +116,15 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             imageStore(records, texel + 3,
                        uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
                              packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
-            if (marks != 0) {
-                const int solid_texel = int(first_solid + 2 * place);
+            const int solid_texel = int(first_solid + 2 * place);
+            if (marks != 0)
                 imageStore(records, solid_texel,
                            uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
+            if (DEFERRED) {
+                const vec3 albedo = surfel_albedo(record);
+                imageStore(records, solid_texel + 1,
+                           uvec4(record.clip, packHalf2x16(albedo.rg), packHalf2x16(vec2(albedo.b, 0)), 0));
+            } else if (marks != 0) {
                 imageStore(records, solid_texel + 1, uvec4(record.clip, 0, 0, 0));
             }
         }

@@ -175,7 +175,10 @@ TEST_CASE("tiles and sprites agree on handmade scenes") {
             settings.camera = each.camera;
             settings.clip_to_scene = false;
             check_agreement(renderer, scene, settings);
+            settings.shading = Shading::kDeferred;
+            check_agreement(renderer, scene, settings);
             settings.prefilter = false;
+            settings.shading = Shading::kSurfel;
             check_agreement(renderer, scene, settings);
         }
     }
@@ -207,7 +210,10 @@ TEST_CASE("tiles and sprites agree on baked models, transformed, in every view")
                                            settings.height);
             settings.view = view;
             CAPTURE(static_cast<int>(view), orthographic);
-            check_agreement(renderer, scene, settings);
+            for (const Shading shading : {Shading::kSurfel, Shading::kDeferred}) {
+                settings.shading = shading;
+                check_agreement(renderer, scene, settings);
+            }
         }
     }
 }
@@ -255,8 +261,11 @@ TEST_CASE("frames too large for one batch, and cells too full for one go") {
         settings.camera = looking_down_z();
         for (const double distance : {0.0, 100.0}) {
             settings.camera.eye.z = distance;
-            CAPTURE(most_groups, distance);
-            check_agreement(renderer, scene, settings);
+            for (const Shading shading : {Shading::kDeferred, Shading::kSurfel}) {
+                settings.shading = shading;
+                CAPTURE(most_groups, distance, name_of(shading));
+                check_agreement(renderer, scene, settings);
+            }
         }
         // And the next frame is a small one again.
         HandmadeModel small;
@@ -276,6 +285,7 @@ TEST_CASE("tiles pass the validation layers") {
     const Scene scene = scene_of(renderer.load(view_of(model.model())));
     for (const std::uint32_t width : {64u, 200u}) {
         settings.width = width;
+        settings.shading = width == 64 ? Shading::kDeferred : Shading::kSurfel;
         CHECK(renderer.render(scene, settings).stats.backend == Backend::kTile);
     }
     CHECK(renderer.validation_messages().empty());

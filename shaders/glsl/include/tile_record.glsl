@@ -5,8 +5,8 @@
 //   0  anchor, reach around it (halves), z
 //   1  plane_map
 //   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
-//   3  colour, its change along u, its change along v but for blue (halves)
-//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it
+//   3  colour, its change along u, its change along v but for blue (halves); deferred: the normal instead, its xyz for rgb
+//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it; deferred: albedo (halves), of flat ones, too
 #ifndef SPLICE_TILE_RECORD_GLSL
 #define SPLICE_TILE_RECORD_GLSL
 
@@ -81,6 +81,9 @@ SplatPaint unpack_paint(SplatPlane splat, uvec4 texel) {
     paint.colour_v = vec3(unpackHalf2x16(texel.w), splat.blue_v);
     return paint;
 }
+
+// Of deferred shading.
+vec3 unpack_albedo(uvec4 texel) { return vec3(unpackHalf2x16(texel.y), unpackHalf2x16(texel.z).x); }
 
 struct SplatFilter {
     vec3 conic;

@@ -16,7 +16,7 @@ namespace splice::bench {
 namespace {
 
 constexpr double kSphereDepth = 10;
-constexpr Backend kBackends[] = {Backend::kSprite, Backend::kTile};
+constexpr Backend kBackends[] = {Backend::kSprite, Backend::kRaster, Backend::kTile, Backend::kPoint, Backend::kAuto};
 
 struct BenchScene {
     std::string name;

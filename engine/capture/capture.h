@@ -36,8 +36,8 @@ class Image;
 struct RendererOptions {
     std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
     bool validate = false;        // validation and synchronisation-validation layers
-    std::uint64_t most_tile_groups = 0;  // groups of 64 surfels the tile backend works on at once; 0: all that fit
-    graph::ExecutorOptions graph = {};   // switches of the render graph, and what it measures of each pass
+    std::uint64_t most_splat_groups = 0;  // groups of 64 surfels that compute passes work on at once; 0: all that fit
+    graph::ExecutorOptions graph = {};    // switches of the render graph, and what it measures of each pass
 };
 
 struct CaptureSettings {
@@ -67,9 +67,15 @@ struct PassTime {
         {};  // with RendererOptions::graph.pipeline_statistics, where there are any
 };
 
+struct DrawnBy {
+    Backend backend;
+    std::uint64_t surfels;  // sent to it, after culling by patch
+};
+
 struct FrameStats {
     std::string device;
-    Backend backend = Backend::kSprite;  // that drew the frame
+    Backend backend = Backend::kSprite;  // that drew the frame, or most of its surfels
+    std::vector<DrawnBy> drawn_by;       // all that drew some
     Shading shading = Shading::kSurfel;
     std::uint32_t antialias = 1;      // samples along each side of a pixel
     double frame_ms = 0;              // submission to completion of the frame, readback included

@@ -22,7 +22,7 @@ struct Renderer::Implementation {
         : own(std::make_unique<OwnDevice>(options)),
           device(own->device),
           executor(device, options.graph),
-          passes(device, options.most_tile_groups) {}
+          passes(device, options.most_splat_groups) {}
     explicit Implementation(gpu::Device& borrowed) : device(borrowed), executor(device), passes(device) {}
 
     // What becomes of the picture: passes that read it.
@@ -116,6 +116,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                               .epsilon_scale = settings.epsilon_scale,
                               .prefilter = settings.prefilter,
                               .shading = settings.shading};
+    const SurfelBackend backend = choose_backend(settings.backend, passes, frame);
     const DrawListOptions list_options{
         .sides = settings.sides,
         .draw_triangles = settings.draw_triangles && settings.shown != Shown::kSurfels &&
@@ -124,11 +125,11 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .surfels_as_triangles = settings.shown == Shown::kTriangles,
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
-        .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0};
+        .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
+        .small_px = backend.small_px};
     const DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
     passes.data.update(frame, scene.lighting, scene.background);
 
-    const Backend backend = choose_backend(settings.backend, device, passes, frame);
     graph.clear();
     graph::Bindings bindings;
     use_picture(bindings, add_frame(graph, bindings, passes, backend, frame, scene.background, draws));
@@ -139,7 +140,10 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     stats->frame_ms = elapsed.count();
     for (const graph::PassTiming& timing : executor.timings())
         stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
-    stats->backend = backend;
+    for (const BackendShare& share : backend_shares(backend, draws)) {
+        if (stats->drawn_by.empty() || share.surfels > stats->drawn_by.front().surfels) stats->backend = share.backend;
+        stats->drawn_by.push_back({share.backend, share.surfels});
+    }
     stats->antialias = antialias;
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;

@@ -41,6 +41,8 @@ enum InstanceFlags : std::uint32_t {
     kInstanceTwoSided = 1u << 0,
     kInstanceFirstSegment = 1u << 1,
     kInstanceLastSegment = 1u << 2,
+    kInstanceTiled = 1u << 3,
+    kInstanceListed = 1u << 4,
 };
 
 struct InstanceConstants {
@@ -63,7 +65,8 @@ struct TileUniforms {
     std::uint32_t words;
     std::uint32_t segmented;
     std::uint32_t first_solid;
-    std::uint32_t padding[2];
+    std::uint32_t first_listed;
+    std::uint32_t padding[1];
     glm::vec4 background;
 };
 static_assert(sizeof(TileUniforms) == 48);

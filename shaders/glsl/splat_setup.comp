@@ -1,4 +1,4 @@
-// Tile backend: every surfel of a range becomes the record of its splat, once a frame. Most surfels of a frame are
+// Every surfel of a range becomes the record of its splat, once a frame. Most surfels of a frame are
 // cheap to reject: a workgroup, which is one subgroup, first finds which of its group are not, then works on those with
 // all of its invocations.
 #version 460
@@ -15,7 +15,7 @@
 #include "splat.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
-#include "tile_record.glsl"
+#include "splat_record.glsl"
 
 layout(local_size_x = 8) in;
 
@@ -167,6 +167,7 @@ void main() {
     subgroupBarrier();
 
     PixelBounds group_bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
+    uint shown = 0;
     uvec2 own_block = uvec2(0);  // of the block with the number of this invocation
     bool solid = false;
     if (kept != 0) {
@@ -176,6 +177,7 @@ void main() {
             PixelBounds bounds =
                 record_surfel(i < kept, instance.first_surfel + remaining[min(i, kept - 1)], group * GROUP + i);
             solid = solid || subgroupBallot(bounds.solid).x != 0;
+            shown += subgroupBallotBitCount(subgroupBallot(bounds.low.x < bounds.high.x));
             bounds = united(bounds);
             group_bounds.low = min(group_bounds.low, bounds.low);
             group_bounds.high = max(group_bounds.high, bounds.high);
@@ -185,8 +187,9 @@ void main() {
         } while (block * BLOCK < kept);
     }
     imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block.x | (solid ? BLOCK_SOLID : 0), own_block.y, 0, 0));
+    if ((instance.flags & INSTANCE_LISTED) != 0 && lane == 0) list.first[group] = shown;
 
-    if (group_bounds.low.x >= group_bounds.high.x) return;
+    if ((instance.flags & INSTANCE_TILED) == 0 || group_bounds.low.x >= group_bounds.high.x) return;
     const uvec2 first_cell = group_bounds.low >> tiles.cell_shift;
     const uvec2 touched = ((group_bounds.high - 1) >> tiles.cell_shift) + 1 - first_cell;
     uint i = lane;

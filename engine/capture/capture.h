@@ -84,6 +84,7 @@ struct FrameStats {
     std::uint64_t triangles_drawn = 0;
     std::uint64_t covered_pixels = 0;  // at least by half
     double overlap_mean = 0;           // surfels contributing to a pixel, over pixels with any; with want_overlap
+    std::uint64_t fragments = 0;       // contributions of surfels to pixels, all together; with want_overlap
 };
 
 struct Frame {

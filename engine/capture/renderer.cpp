@@ -66,7 +66,7 @@ std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
     return values;
 }
 
-double mean_overlap(const std::vector<float>& counts) {
+void count_overlap(FrameStats& stats, const std::vector<float>& counts) {
     double sum = 0;
     std::uint64_t pixels = 0;
     for (const float count : counts) {
@@ -74,7 +74,8 @@ double mean_overlap(const std::vector<float>& counts) {
         sum += count;
         ++pixels;
     }
-    return pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+    stats.overlap_mean = pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+    stats.fragments = static_cast<std::uint64_t>(sum);
 }
 
 std::uint8_t encoded(double channel) {
@@ -197,7 +198,7 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
                                        static_cast<std::uint8_t>(background.transparent ? 0 : 255)};
         frame.rgba = picture_of_numbers(settings.view, values, settings.width, settings.height, empty).rgba;
         if (settings.view == View::kDepth) frame.depth = values;
-        if (settings.view == View::kOverlap) frame.stats.overlap_mean = mean_overlap(values);
+        if (settings.view == View::kOverlap) count_overlap(frame.stats, values);
     } else {
         frame.rgba.resize(raw.size());
         std::memcpy(frame.rgba.data(), raw.data(), raw.size());
@@ -211,8 +212,7 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
     if (settings.want_depth && frame.depth.empty())
         frame.depth = floats_of(engine.render_raw(scene, settings, camera, View::kDepth, nullptr));
     if (settings.want_overlap && settings.view != View::kOverlap)
-        frame.stats.overlap_mean =
-            mean_overlap(floats_of(engine.render_raw(scene, settings, camera, View::kOverlap, nullptr)));
+        count_overlap(frame.stats, floats_of(engine.render_raw(scene, settings, camera, View::kOverlap, nullptr)));
     return frame;
 }
 

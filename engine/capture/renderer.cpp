@@ -116,7 +116,8 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                               .view = view,
                               .epsilon_scale = settings.epsilon_scale,
                               .prefilter = settings.prefilter,
-                              .shading = settings.shading};
+                              .shading = settings.shading,
+                              .lighting = lighting_flags(scene.lighting)};
     const SurfelBackend backend = choose_backend(settings.backend, passes, frame);
     const DrawListOptions list_options{
         .sides = settings.sides,

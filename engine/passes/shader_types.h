@@ -25,9 +25,8 @@ struct FrameUniforms {
     float rim;
     float rim_exponent;
     glm::vec4 background;
-    std::uint32_t phong;
     std::uint32_t samples_per_side;
-    float padding[2];  // std140 rounds the block up to 16 bytes
+    float padding[3];  // std140 rounds the block up to 16 bytes
 };
 static_assert(sizeof(FrameUniforms) == 160 && offsetof(FrameUniforms, ambient) == 96);
 
@@ -36,6 +35,14 @@ struct LightRecord {
     glm::vec4 colour;
 };
 static_assert(sizeof(LightRecord) == 32);
+
+/// Constant 6 of frame.glsl.
+enum LightingFlags : std::uint32_t {
+    kLightingHighlights = 1u << 0,
+    kLightingPhong = 1u << 1,
+    kLightingRim = 1u << 2,
+    kLightingLamps = 1u << 3,
+};
 
 enum InstanceFlags : std::uint32_t {
     kInstanceTwoSided = 1u << 0,

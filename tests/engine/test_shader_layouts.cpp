@@ -157,7 +157,7 @@ TEST_CASE("frame uniforms have the layout that the shaders declare") {
           MEMBER(FrameUniforms, sample_share), MEMBER(FrameUniforms, sample_radius), MEMBER(FrameUniforms, ambient),
           MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess),
           MEMBER(FrameUniforms, rim), MEMBER(FrameUniforms, rim_exponent), MEMBER(FrameUniforms, background),
-          MEMBER(FrameUniforms, phong), MEMBER(FrameUniforms, samples_per_side)}});
+          MEMBER(FrameUniforms, samples_per_side)}});
 }
 
 TEST_CASE("light records have the layout that the shaders declare") {
@@ -223,6 +223,10 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
+    CHECK(constant("include/frame.glsl", "LIGHTING_HIGHLIGHTS") == kLightingHighlights);
+    CHECK(constant("include/frame.glsl", "LIGHTING_PHONG") == kLightingPhong);
+    CHECK(constant("include/frame.glsl", "LIGHTING_RIM") == kLightingRim);
+    CHECK(constant("include/frame.glsl", "LIGHTING_LAMPS") == kLightingLamps);
     CHECK(constant("include/tile.glsl", "TILE") == kTileWidth);
     CHECK(constant("include/tile.glsl", "TILE", 1) == kTileHeight);
     CHECK(constant("include/tile.glsl", "GROUP") == kTileGroup);

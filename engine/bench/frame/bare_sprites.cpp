@@ -261,7 +261,8 @@ FrameStats BareSprites::render(const CaptureSettings& settings) {
     const FrameSettings frame{.width = settings.width,
                               .height = settings.height,
                               .camera = settings.camera,
-                              .prefilter = settings.prefilter};
+                              .prefilter = settings.prefilter,
+                              .lighting = lighting_flags(Scene{}.lighting)};
     bare.resize(settings.width, settings.height);
     bare.make_pipelines(frame);
     const auto start = std::chrono::steady_clock::now();

@@ -56,7 +56,9 @@ struct CaptureSettings {
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
     Backend backend = Backend::kSprite;
-    bool force_quads = false;  // draw every surfel as an oriented quad, none as a point sprite
+    std::optional<double> points_below = {};  // pixels: patches whose splats are all at most this wide are drawn as
+                                              // points by every backend but sprites; none: as the backend chooses
+    bool force_quads = false;                 // draw every surfel as an oriented quad, none as a point sprite
     friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
 };
 

@@ -118,7 +118,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                               .prefilter = settings.prefilter,
                               .shading = settings.shading,
                               .lighting = lighting_flags(scene.lighting)};
-    const SurfelBackend backend = choose_backend(settings.backend, passes, frame);
+    const SurfelBackend backend = choose_backend(settings.backend, settings.points_below, passes, frame);
     const DrawListOptions list_options{
         .sides = settings.sides,
         .draw_triangles = settings.draw_triangles && settings.shown != Shown::kSurfels &&

@@ -2,16 +2,10 @@
 
 #include "preprocess/model_format/error.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace splice {
-
-namespace {
-
-// Pixels: splats up to this size are scattered as points rather than rasterised or gathered.
-constexpr double kSmallSplat = 8;
-
-}  // namespace
 
 FrameFormats::FrameFormats(const gpu::Device& device)
     : depth_stencil(device.depth_stencil_format()),
@@ -32,10 +26,12 @@ VkFormat picture_format(View view) {
     return is_numeric(view) ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
 }
 
-SurfelBackend choose_backend(Backend wanted, const FramePasses& passes, const FrameSettings& settings) {
+SurfelBackend choose_backend(Backend wanted, std::optional<double> points_below, const FramePasses& passes,
+                             const FrameSettings& settings) {
     const std::optional<Techniques> techniques = passes.splats.choose(wanted, settings);
     const bool by_size = techniques && techniques->small != techniques->others;
-    return {techniques, by_size ? kSmallSplat : 0};
+    return {techniques,
+            by_size ? std::min(points_below.value_or(passes.splats.default_points_below(wanted)), kLargestPoint) : 0};
 }
 
 std::vector<BackendShare> backend_shares(const SurfelBackend& backend, const DrawList& draws) {

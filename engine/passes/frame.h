@@ -47,8 +47,10 @@ struct SurfelBackend {
     double small_px = 0;                        // see DrawListOptions
 };
 
-/// What was asked for where it can draw the frame, else sprites.
-SurfelBackend choose_backend(Backend wanted, const FramePasses& passes, const FrameSettings& settings);
+/// What was asked for where it can draw the frame, else sprites. `points_below`: pixels; surfels of patches whose
+/// splats are all at most this wide become points; none: the default.
+SurfelBackend choose_backend(Backend wanted, std::optional<double> points_below, const FramePasses& passes,
+                             const FrameSettings& settings);
 
 /// How many surfels each backend draws, those that draw any.
 struct BackendShare {

@@ -7,6 +7,9 @@ namespace splice {
 
 namespace {
 
+// Splats of a few pixels, filter included, are cheaper to scatter than to rasterise; the point backend takes larger
+// ones.
+constexpr double kPointPixels = 5, kMostPointPixels = 16;
 constexpr std::uint64_t kPointSumBytes = 8;   // a channel
 constexpr std::uint32_t kPointSumsGroup = 8;  // local_size_x and y of point_sums.comp
 
@@ -77,20 +80,18 @@ std::optional<Techniques> SplatPasses::choose(Backend wanted, const FrameSetting
     // The visibility view shows the depth buffer, which tiles alone do not write.
     const bool tiles = tiles_supported_ && settings.view != View::kVisibility;
     const bool points = tiles_supported_ && point_bytes(settings) <= device_.limits().maxStorageBufferRange;
-    switch (wanted) {
-        case Backend::kRaster:
-            return Techniques{Technique::kRaster, Technique::kRaster};
-        case Backend::kPoint:
-            if (!points) return std::nullopt;
-            return Techniques{Technique::kPoint, Technique::kRaster};
-        case Backend::kTile:
-            if (!tiles) return std::nullopt;
-            return Techniques{Technique::kTile, Technique::kTile};
-        default: {
-            const Technique others = device_.info().is_cpu() && tiles ? Technique::kTile : Technique::kRaster;
-            return Techniques{points ? Technique::kPoint : others, others};
-        }
+    Technique others = Technique::kRaster;
+    if (wanted == Backend::kTile || (wanted == Backend::kAuto && device_.info().is_cpu())) {
+        if (!tiles && wanted == Backend::kTile) return std::nullopt;
+        if (tiles) others = Technique::kTile;
     }
+    return Techniques{points ? Technique::kPoint : others, others};
+}
+
+double SplatPasses::default_points_below(Backend wanted) const {
+    if (wanted == Backend::kPoint) return kMostPointPixels;
+    // Where a processor renders, gathering was faster at every size (docs/benchmarks.md).
+    return wanted == Backend::kAuto && !device_.info().is_cpu() ? kPointPixels : 0;
 }
 
 bool SplatPasses::composes(const FrameSettings& settings) {

@@ -26,9 +26,11 @@ class SplatPasses {
     /// more are drawn batch by batch.
     SplatPasses(gpu::Device& device, const FrameData& data, std::uint64_t most_groups);
 
-    /// The technique that comes nearest to what is wanted, by the device's abilities and the view; none: only sprites
-    /// can draw the frame.
+    /// The techniques that come nearest to what is wanted, by the device's abilities and the view; none: only sprites
+    /// can draw the frame. Without points for the small splats, both are the same.
     std::optional<Techniques> choose(Backend wanted, const FrameSettings& settings) const;
+    /// Pixels: splats up to this size become points unless somebody says otherwise.
+    double default_points_below(Backend wanted) const;
 
     /// What to normalise; none: targets.picture is complete. `draws` and `settings` must live until the graph has been
     /// executed. No submitted work may still use the frame before.

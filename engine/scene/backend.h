@@ -21,6 +21,9 @@ inline constexpr Names<Backend, 5> kBackendNames{{{Backend::kAuto, "auto"},
                                                   {Backend::kTile, "tile"},
                                                   {Backend::kPoint, "point"}}};
 
+/// Pixels: no splat that is larger is drawn as a point.
+inline constexpr double kLargestPoint = 64;
+
 constexpr std::string_view name_of(Backend backend) {
     return name_in(kBackendNames, backend);
 }

@@ -1,4 +1,5 @@
-// The tile backend against the sprites: the same pictures to a stated tolerance, the same bytes every time.
+// Every backend against the sprites: the same pictures to a stated tolerance, the same bytes every time.
+#include "engine/bench/bumpy_sphere.h"
 #include "engine/capture/capture.h"
 #include "preprocess/build_model/build_model.h"
 #include "preprocess/mesh/read_mesh.h"
@@ -12,20 +13,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 
 using namespace splice;
 using namespace splice::test;
 
 namespace {
 
-// Both backends compute the same splats; single precision decides otherwise at few pixels only, where a ray meets a
+// All backends compute the same splats; single precision decides otherwise at few pixels only, where a ray meets a
 // disk's very edge or two depths are equal. Share of the pixels that may differ by more than a step of 8 bits; all the
 // others are at least this near.
 constexpr int kSteps = 1;
 constexpr double kOddShare = 5e-4;
 constexpr double kLeastPsnr = 60;
 
-struct TileCase {
+struct BackendCase {
     const char* name;
     std::function<void(HandmadeModel&)> fill;
     Camera camera;
@@ -61,7 +63,7 @@ std::vector<Disk> scattered(int count, float smallest, float largest, float spre
     return disks;
 }
 
-std::vector<TileCase> tile_cases() {
+std::vector<BackendCase> backend_cases() {
     const Camera eye = looking_down_z();
     const auto wall = [](float z, int count, std::uint32_t colour) {
         return sheet({-1, -0.8f, z}, {2, 0, 0}, {0, 1.6f, 0}, count, colour);
@@ -156,7 +158,18 @@ Difference difference(const std::vector<std::uint8_t>& a, const std::vector<std:
     return result;
 }
 
-constexpr Backend kBackends[] = {Backend::kTile, Backend::kRaster, Backend::kPoint, Backend::kAuto};
+struct Variant {
+    Backend backend;
+    std::optional<double> points_below = {};
+};
+// What each backend does by itself; points beside tiles, and beside rasterised splats.
+const Variant kVariants[] = {{Backend::kTile},     {Backend::kRaster},    {Backend::kPoint},
+                             {Backend::kTile, 10}, {Backend::kRaster, 8}, {Backend::kAuto}};
+
+void choose(CaptureSettings& settings, const Variant& variant) {
+    settings.backend = variant.backend;
+    settings.points_below = variant.points_below;
+}
 
 bool drew(const Frame& frame, Backend backend) {
     return std::any_of(frame.stats.drawn_by.begin(), frame.stats.drawn_by.end(),
@@ -168,10 +181,10 @@ void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings set
     settings.backend = Backend::kSprite;
     const Frame sprite = renderer.render(scene, settings);
     CHECK(sprite.stats.backend == Backend::kSprite);
-    for (const Backend backend : kBackends) {
-        settings.backend = backend;
+    for (const Variant& variant : kVariants) {
+        choose(settings, variant);
         const Frame frame = renderer.render(scene, settings);
-        CAPTURE(name_of(backend));
+        CAPTURE(name_of(variant.backend), variant.points_below.value_or(-1));
         REQUIRE(!drew(frame, Backend::kSprite));
         CHECK(frame.stats.surfels_drawn == sprite.stats.surfels_drawn);
         const Difference off = difference(sprite.rgba, frame.rgba);
@@ -184,9 +197,9 @@ void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings set
 
 }  // namespace
 
-TEST_CASE("tiles and sprites agree on handmade scenes") {
+TEST_CASE("backends and sprites agree on handmade scenes") {
     Renderer renderer({});
-    for (const TileCase& each : tile_cases()) {
+    for (const BackendCase& each : backend_cases()) {
         DYNAMIC_SECTION(each.name) {
             HandmadeModel model(each.two_sided);
             each.fill(model);
@@ -198,8 +211,13 @@ TEST_CASE("tiles and sprites agree on handmade scenes") {
             settings.clip_to_scene = false;
             check_agreement(renderer, scene, settings);
             if (each.mixed) {
-                settings.backend = Backend::kAuto;
-                CHECK(renderer.render(scene, settings).stats.drawn_by.size() == 2);
+                for (const Variant& variant : {Variant{Backend::kTile, 10}, Variant{Backend::kRaster, 10}}) {
+                    choose(settings, variant);
+                    const Frame frame = renderer.render(scene, settings);
+                    CHECK(frame.stats.drawn_by.size() == 2);
+                    CHECK(drew(frame, variant.backend));
+                    CHECK(drew(frame, Backend::kPoint));
+                }
             }
             settings.shading = Shading::kDeferred;
             check_agreement(renderer, scene, settings);
@@ -210,7 +228,7 @@ TEST_CASE("tiles and sprites agree on handmade scenes") {
     }
 }
 
-TEST_CASE("tiles and sprites agree on baked models, transformed, in every view") {
+TEST_CASE("backends and sprites agree on baked models, transformed, in every view") {
     Renderer renderer({});
     BakeStats stats;
     const auto baked = [&](SourceMesh mesh) {
@@ -242,6 +260,24 @@ TEST_CASE("tiles and sprites agree on baked models, transformed, in every view")
             }
         }
     }
+}
+
+TEST_CASE("backends and sprites agree on bumpy spheres in many batches") {
+    Renderer renderer({.most_splat_groups = 1000});
+    const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(300'000, 2.4))));
+    CaptureSettings settings;
+    settings.width = settings.height = 384;
+    settings.camera.eye = {0.2, 0.1, 2.3};
+    check_agreement(renderer, scene, settings);
+}
+
+// Minutes, and 2 GB: records and surfels in several bindings.
+TEST_CASE("backends and sprites agree on eight million surfels", "[.long]") {
+    Renderer renderer({});
+    const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(8'000'000, 2.4))));
+    CaptureSettings settings;
+    settings.camera.eye = {0.2, 0.1, 2.3};
+    check_agreement(renderer, scene, settings);
 }
 
 TEST_CASE("a view that tiles cannot draw falls back to sprites and says so") {
@@ -306,8 +342,8 @@ TEST_CASE("backends pass the validation layers") {
         .add_triangles(quad({-0.2f, -0.5f, -2}, {0.5f, 0, 0}, {0, 0.9f, 0}, kGreen));
     CaptureSettings settings;
     const Scene scene = scene_of(renderer.load(view_of(model.model())));
-    for (const Backend backend : kBackends) {
-        settings.backend = backend;
+    for (const Variant& variant : kVariants) {
+        choose(settings, variant);
         for (const std::uint32_t width : {64u, 200u}) {
             settings.width = width;
             settings.shading = width == 64 ? Shading::kDeferred : Shading::kSurfel;

@@ -94,6 +94,7 @@ void measure(Renderer& renderer, const BenchScene& bench, const FrameBenchOption
         const auto add = [&](const std::string& name, Shading shading, Backend backend, BareSprites* instead) {
             Variant variant{.row = {}, .settings = settings, .bare = instead};
             variant.settings.backend = backend;
+            variant.settings.points_below = options.points_below;
             variant.settings.shading = shading;
             variant.row.scene = bench.name;
             variant.row.backend = name;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,8 +22,9 @@ struct FrameBenchOptions {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes = {{512, 512}};  // pixels
     std::vector<Backend> backends;                                              // none: all
     std::vector<Shading> shadings = {Shading::kSurfel};
-    bool bare = false;     // spheres: the baseline, too
-    unsigned rounds = 15;  // timed frames a variant
+    std::optional<double> points_below = {};  // pixels: CaptureSettings
+    bool bare = false;                        // spheres: the baseline, too
+    unsigned rounds = 15;                     // timed frames a variant
 };
 
 FrameReport bench_frame(const FrameBenchOptions& options);

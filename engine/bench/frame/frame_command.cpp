@@ -56,6 +56,8 @@ CLI::App& add_frame_command(CLI::App& program, FrameCommand& command) {
     app.add_option("--size", command.sizes, "Pixels, WIDTHxHEIGHT, separated by commas")
         ->delimiter(',')
         ->capture_default_str();
+    app.add_option("--points-below", options.points_below, "As splice-capture's, 0 to 64 pixels")
+        ->check(CLI::Range(0.0, kLargestPoint));
     app.add_option("--rounds", options.rounds, "Timed frames a variant")
         ->check(CLI::Range(1U, kMostRounds))
         ->capture_default_str();

@@ -58,9 +58,9 @@ std::string draw_passes(const std::vector<const FrameRow*>& rows) {
         double at = kLeft;
         for (const PassSample& pass : row->passes) {
             const double width = pass.gpu_ms.median * unit;
-            svg.rectangle(at, y, width, kBar, fmt::format("f{}", colours[pass.name] % kColours),
-                          fmt::format("{}: {:.1f} ms, at least {:.1f}", pass.name, pass.gpu_ms.median,
-                                      pass.gpu_ms.minimum));
+            svg.rectangle(
+                at, y, width, kBar, fmt::format("f{}", colours[pass.name] % kColours),
+                fmt::format("{}: {:.1f} ms, at least {:.1f}", pass.name, pass.gpu_ms.median, pass.gpu_ms.minimum));
             at += width;
         }
         svg.text(std::max(at, kLeft + row->frame_ms.median * unit) + 8, y + kBar / 2 + 4,

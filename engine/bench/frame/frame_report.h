@@ -19,14 +19,14 @@ struct PassSample {
 
 /// One variant of one scene: frames of it took turns with those of the scene's other variants.
 struct FrameRow {
-    std::string scene, backend, shading;     // backend "bare": plain Vulkan, see bare_sprites.h
-    std::uint32_t width = 0, height = 0;     // pixels
+    std::string scene, backend, shading;       // backend "bare": plain Vulkan, see bare_sprites.h
+    std::uint32_t width = 0, height = 0;       // pixels
     std::uint64_t surfels = 0, triangles = 0;  // sent to the device
     std::uint64_t covered_pixels = 0;
-    std::uint64_t fragments = 0;             // useful ones: what surfels contribute to pixels, all together
-    Sample frame_ms;                         // submission to completion, read back included
-    Sample cpu_ms;                           // of all threads: what a busy machine distorts least
-    std::vector<PassSample> passes;          // in order of execution
+    std::uint64_t fragments = 0;     // useful ones: what surfels contribute to pixels, all together
+    Sample frame_ms;                 // submission to completion, read back included
+    Sample cpu_ms;                   // of all threads: what a busy machine distorts least
+    std::vector<PassSample> passes;  // in order of execution
     std::vector<std::pair<std::string, std::uint64_t>> drawn_by;  // backend, surfels
 
     double coverage() const {

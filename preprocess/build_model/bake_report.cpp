@@ -26,6 +26,8 @@ constexpr std::array kRepairCounts = {
     RepairCount{"duplicate_triangles", "duplicate triangles dropped", &RepairReport::duplicate_triangles},
     RepairCount{"flipped_triangles", "triangles turned to agree with their neighbours",
                 &RepairReport::flipped_triangles},
+    RepairCount{"inverted_triangles", "triangles turned, the surface being inside out",
+                &RepairReport::inverted_triangles},
     RepairCount{"computed_normals", "corner normals computed", &RepairReport::computed_normals},
 };
 

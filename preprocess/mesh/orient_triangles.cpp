@@ -78,4 +78,15 @@ std::vector<std::uint8_t> find_flipped_triangles(std::span<const Vec3f> position
     return flipped;
 }
 
+bool is_inside_out(std::span<const Vec3f> positions, std::span<const Triangle> triangles, const EdgeTable& edges) {
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto edge = edges.edge(e);
+        if (edge.size() != 2 || same_direction(triangles, edge[0], edge[1])) return false;
+    }
+    double volume = 0;
+    for (const Triangle& t : triangles)
+        volume += signed_volume(positions, t);
+    return volume < 0;
+}
+
 }  // namespace splice

@@ -11,4 +11,8 @@ namespace splice {
 std::vector<std::uint8_t> find_flipped_triangles(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                                                  const EdgeTable& edges);
 
+/// True for a closed and consistently wound surface that encloses a negative volume: all of its triangles face inwards.
+/// Cavities count against what surrounds them, so hollow bodies are judged by their outside.
+bool is_inside_out(std::span<const Vec3f> positions, std::span<const Triangle> triangles, const EdgeTable& edges);
+
 }  // namespace splice

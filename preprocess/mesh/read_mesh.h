@@ -36,7 +36,8 @@ struct RepairReport {
     std::uint64_t degenerate_triangles = 0;  // zero area or repeated vertex, dropped
     std::uint64_t flipped_caps = 0;          // collinear triangles given area by flipping their long edge
     std::uint64_t duplicate_triangles = 0;   // same three vertices
-    std::uint64_t flipped_triangles = 0;     // turned to agree with their neighbours, if repair does that
+    std::uint64_t flipped_triangles = 0;     // turned to agree with their neighbours
+    std::uint64_t inverted_triangles = 0;    // all of them, turned because the surface was inside out
     std::uint64_t computed_normals = 0;      // corners whose normal was missing or unusable
     std::uint64_t boundary_edges = 0, nonmanifold_edges = 0;  // of the repaired mesh
 };

@@ -296,11 +296,20 @@ class Repair {
         const auto flipped = find_flipped_triangles(mesh_.positions, mesh_.triangles, edges_);
         for (std::size_t t = 0; t < flipped.size(); ++t) {
             if (flipped[t] == 0) continue;
-            std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
-            std::swap(triangles_[t][1], triangles_[t][2]);
+            turn(t);
             ++report_.flipped_triangles;
         }
         if (report_.flipped_triangles > 0) edges_ = build_edge_table(mesh_.triangles, mesh_.positions.size());
+        if (!is_inside_out(mesh_.positions, mesh_.triangles, edges_)) return;
+        for (std::size_t t = 0; t < triangles_.size(); ++t)
+            turn(t);
+        report_.inverted_triangles = triangles_.size();
+        edges_ = build_edge_table(mesh_.triangles, mesh_.positions.size());
+    }
+
+    void turn(std::size_t triangle) {
+        std::swap(mesh_.triangles[triangle][1], mesh_.triangles[triangle][2]);
+        std::swap(triangles_[triangle][1], triangles_[triangle][2]);
     }
 
     void measure_edges() {
@@ -358,8 +367,12 @@ class Repair {
                 const Vec3d given = source_.corner_normals[triangles_[t][k]].cast<double>();
                 const double length = given.norm();
                 Vec3f& normal = mesh_.corner_normals[3 * t + k];
-                if (!(length > 0) || !std::isfinite(length) || !(given.dot(normal.cast<double>()) > 0)) continue;
-                normal = (given / length).cast<float>();
+                if (!(length > 0) || !std::isfinite(length)) continue;
+                const double agreement = given.dot(normal.cast<double>());
+                // The normals of a surface that was inside out may have been so with it.
+                const double sign = agreement < 0 && report_.inverted_triangles > 0 ? -1 : 1;
+                if (!(sign * agreement > 0)) continue;
+                normal = (sign / length * given).cast<float>();
                 --report_.computed_normals;
             }
         }

@@ -151,7 +151,9 @@ TileSolid solid_in_tile(SplatSolid solid, TilePlane plane, bool speck) {
     const vec2 ends = vec2(-solid.swell.y, solid.swell.x) * (ORTHOGRAPHIC ? 1 : solid.climb);
     // A speck shows at its own pixel and nowhere else.
     const vec2 h = speck ? vec2(0) : vec2(min(ends.x, ends.y), max(ends.x, ends.y));
-    return TileSolid(solid.clip.x * plane.u + solid.clip.y * plane.v - solid.clip.z * plane.e,
+    vec3 past_clip = solid.clip.x * plane.u + solid.clip.y * plane.v - solid.clip.z * plane.e;
+    past_clip.x -= CLIP_SLACK * length(past_clip.yz);
+    return TileSolid(past_clip,
                      dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew, h, solid.climb);
 }
 

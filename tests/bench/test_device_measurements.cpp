@@ -44,6 +44,23 @@ TEST_CASE("the twin by hand records the same commands and leaves the same pictur
     CHECK(validated.complaints() == "");
 }
 
+TEST_CASE("recording is measured against size, and a graph declared anew finds its plan") {
+    test::ValidatedDevice validated;
+    const bench::RecordGrowthMeasurement measurement{.families = bench::families(), .sizes = {4, 48}, .rounds = 3};
+    const auto results = bench::measure_record_growth(validated.device, measurement);
+    REQUIRE(results.size() == 2 * measurement.families.size());
+    for (size_t i = 0; i < results.size(); ++i) {
+        INFO(results[i].family);
+        CHECK(results[i].family == measurement.families[i / 2].name);
+        CHECK(results[i].passes == measurement.sizes[i % 2]);
+        CHECK(results[i].render_passes > 0);
+        CHECK(results[i].render_passes <= results[i].passes);
+        CHECK(results[i].record_us.median > 0);
+        CHECK(results[i].hit_us.median >= 0);
+    }
+    CHECK(validated.complaints() == "");
+}
+
 TEST_CASE("the twin's picture shows something, and views of other shapes work") {
     test::ValidatedDevice validated;
     const bench::PassShaders shaders(validated.device);

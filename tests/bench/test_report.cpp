@@ -45,7 +45,7 @@ TEST_CASE("a measurement covers every family, each size once, in order, and says
     const bench::GraphReport report = measured();
     const nlohmann::json json = to_json(report);
     CHECK(json.at("benchmark") == "splice-bench graph");
-    CHECK(json.at("version") == 1);
+    CHECK(json.at("version") == 2);
     CHECK(json.at("device") == "");
     REQUIRE(json.at("compile").size() == kFamilies.size() * 3);
     std::set<std::string> families;

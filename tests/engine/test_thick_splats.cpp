@@ -22,6 +22,8 @@ namespace {
 constexpr std::uint32_t kSize = 160;
 // Single precision decides otherwise only where the truth is as close as this, in radii.
 constexpr double kUndecided = 3e-3;
+// The clip line is met by rays as far as this outside of it: CLIP_SLACK of splat.glsl, pixels.
+constexpr double kClipSlack = 1.0 / 128;
 
 /// How near to the disk's axis the ray comes within the solid, in radii. `slack`: by how much farther out than it lies
 /// the clip line is taken to be, in radii.
@@ -51,6 +53,17 @@ double nearest_to_axis(const Disk& disk, const glm::dvec3& origin, const glm::dv
     return glm::length(across + t * along) / radius;
 }
 
+struct Ray {
+    glm::dvec3 origin, direction;
+};
+
+/// Through a point of the window; `scale`: pixels per unit at depth 1, or per unit where rays are parallel.
+Ray ray_through(const glm::dvec2& pixel, std::uint32_t size, double scale, bool orthographic) {
+    const glm::dvec2 offset((pixel.x - size / 2.0) / scale, -(pixel.y - size / 2.0) / scale);
+    if (orthographic) return {glm::dvec3(offset, 0), {0, 0, -1}};
+    return {glm::dvec3(0), glm::dvec3(offset, -1)};
+}
+
 void check_cover(const Disk& disk, bool orthographic, bool quads, double near_plane = 0.01,
                  std::uint32_t size = kSize) {
     Renderer renderer({});
@@ -69,12 +82,18 @@ void check_cover(const Disk& disk, bool orthographic, bool quads, double near_pl
     int covered = 0, wrong_cover = 0, wrong_depth = 0;
     for (std::uint32_t y = 0; y < size; ++y) {
         for (std::uint32_t x = 0; x < size; ++x) {
-            const glm::dvec2 offset((x + 0.5 - size / 2.0) / scale, -(y + 0.5 - size / 2.0) / scale);
-            const glm::dvec3 origin = orthographic ? glm::dvec3(offset, 0) : glm::dvec3(0);
-            const glm::dvec3 ray = orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset, -1);
-            const double nearest = nearest_to_axis(disk, origin, ray, near_plane, 0);
-            const double least = nearest_to_axis(disk, origin, ray, near_plane, kUndecided) - kUndecided,
-                         most = nearest_to_axis(disk, origin, ray, near_plane, -kUndecided) + kUndecided;
+            const auto nearest_at = [&](const glm::dvec2& moved, double slack) {
+                const Ray ray = ray_through(glm::dvec2(x + 0.5, y + 0.5) + moved, size, scale, orthographic);
+                return nearest_to_axis(disk, ray.origin, ray.direction, near_plane, slack);
+            };
+            const double nearest = nearest_at({0, 0}, 0);
+            double least = nearest_at({0, 0}, kUndecided);
+            for (int k = 0; k < 8 && disk.clip != kNoClip; ++k) {
+                const double turn = glm::radians(45.0 * k);
+                least = std::min(least, nearest_at(1.1 * kClipSlack * glm::dvec2(std::cos(turn), std::sin(turn)), 0));
+            }
+            least -= kUndecided;
+            const double most = nearest_at({0, 0}, -kUndecided) + kUndecided;
             if (least < 1 && most >= 1) continue;
             const std::size_t i = std::size_t{y} * size + x;
             covered += frame.coverage[i] != 0 ? 1 : 0;

@@ -1,10 +1,13 @@
 // The declaration of a frame from bytes, well used or not: each call either does its work or throws a GraphError that
-// names pass and resource, and what compile() accepts has no hazard.
+// names pass and resource. What compile() accepts has no hazard and keeps exactly the passes that something needs; the
+// same bytes, declared again, have the same key and the same plan.
 #include "engine/render_graph/compile.h"
 #include "tests/render_graph/hazard_checker.h"
+#include "tests/render_graph/plan_checker.h"
 
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -245,10 +248,7 @@ class Declarer {
     std::vector<Pass> passes_;
 };
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    Bytes bytes(data, size);
+graph::CompileOptions read_options(Bytes& bytes) {
     graph::CompileOptions options;
     const std::uint32_t switches = bytes.take(64);
     options.cull = (switches & 1) == 0;
@@ -256,6 +256,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.alias = (switches & 4) == 0;
     options.batch_barriers = (switches & 8) == 0;
     if ((switches & 16) != 0) options.random_order = bytes.take(256);
+    return options;
+}
+
+void require_same(const graph::Graph& one, const graph::Graph& other, const graph::Plan& plan,
+                  const graph::CompileOptions& options) {
+    require(one.key() == other.key(), "two declarations of the same bytes have different keys");
+    require(graph::compile(other, options) == plan, "two declarations of the same bytes have different plans");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    graph::CompileOptions options = read_options(bytes);
     std::vector<graph::MemoryRequirement> memory;
     options.memory = [&](uint32_t resource, const graph::PlannedResource&) { return memory[resource]; };
     graph::Graph graph;
@@ -266,6 +280,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const graph::Plan plan = graph::compile(graph, options);
         for (const std::string& problem : test::find_hazards(graph, plan, memory))
             require(false, problem);
+        if (options.cull) {
+            const std::set<uint32_t> kept(plan.order.begin(), plan.order.end());
+            require(kept == test::needed_passes(graph), "other passes are kept than something needs");
+        }
+        Bytes again(data, size);
+        read_options(again);
+        graph::Graph other;
+        Declarer(again).run(other);
+        require_same(graph, other, plan, options);
     });
     return 0;
 }

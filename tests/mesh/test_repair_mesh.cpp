@@ -181,14 +181,45 @@ TEST_CASE("Randomly turned faces of a closed mesh come out facing outwards") {
     CHECK(signed_volume(mesh) > 0);
 }
 
-TEST_CASE("A consistently inside-out mesh is left as its author made it") {
-    SourceMesh inside_out = shapes::ico_sphere(3);
-    turn(inside_out, [](std::size_t) { return true; });
+TEST_CASE("A closed mesh that is inside out is turned, and its normals with it") {
+    const SourceMesh sphere = shapes::ico_sphere(3);
+    const IndexedMesh wanted = repaired(sphere);
+    for (const bool normals_turned : {false, true}) {
+        SourceMesh inside_out = sphere;
+        turn(inside_out, [](std::size_t) { return true; });
+        for (const std::uint32_t v : inside_out.corner_position) {
+            const Vec3f outwards = inside_out.positions[v].normalized().cast<float>();
+            inside_out.corner_normals.push_back(normals_turned ? Vec3f(-outwards) : outwards);
+        }
+        RepairReport report;
+        const IndexedMesh mesh = repaired(std::move(inside_out), &report);
+        CHECK(report.flipped_triangles == 0);
+        CHECK(report.inverted_triangles == mesh.triangles.size());
+        CHECK(report.computed_normals == 0);
+        CHECK(mesh.consistently_oriented);
+        CHECK(signed_volume(mesh) == Approx(signed_volume(wanted)));
+        for (std::size_t c = 0; c < mesh.corner_normals.size(); ++c) {
+            const Vec3f& p = mesh.positions[mesh.triangles[c / 3][c % 3]];
+            CHECK(mesh.corner_normals[c].dot(p.normalized()) > 0.99f);
+        }
+    }
+}
+
+TEST_CASE("A hollow body is not inside out, whatever its cavity") {
+    SourceMesh hollow = shapes::ico_sphere(3), cavity = shapes::ico_sphere(2);
+    turn(cavity, [](std::size_t) { return true; });
+    const auto first = static_cast<std::uint32_t>(hollow.positions.size());
+    for (const auto& p : cavity.positions)
+        hollow.positions.push_back(0.5 * p);
+    for (const std::uint32_t v : cavity.corner_position)
+        hollow.corner_position.push_back(first + v);
+    const std::uint64_t corners = hollow.polygon_begin.back();
+    for (std::size_t i = 1; i < cavity.polygon_begin.size(); ++i)
+        hollow.polygon_begin.push_back(corners + cavity.polygon_begin[i]);
     RepairReport report;
-    const IndexedMesh mesh = repaired(std::move(inside_out), &report);
+    repaired(std::move(hollow), &report);
+    CHECK(report.inverted_triangles == 0);
     CHECK(report.flipped_triangles == 0);
-    CHECK(mesh.consistently_oriented);
-    CHECK(signed_volume(mesh) < 0);
 }
 
 TEST_CASE("In an open mesh the minority is turned, with its corner attributes") {

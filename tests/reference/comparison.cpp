@@ -111,7 +111,7 @@ SurfaceCheck check_frame(Renderer& renderer, const Scene& scene, const ModelView
     const Tolerance tolerance = surfel_tolerance(model, view, truth, static_cast<float>(settings.epsilon_scale));
     SurfaceCheck check;
     check.report = check_surface(shown, truth, tolerance, &check.marked,
-                                 [&](std::uint32_t x, std::uint32_t y) { return oracle.nearest_in_pixel(view, x, y); });
+                                 [&](std::uint32_t x, std::uint32_t y) { return oracle.range_in_pixel(view, x, y); });
     check.iou = silhouette_iou(covered(shown), covered(truth));
     return check;
 }

@@ -3,6 +3,7 @@
 
 #include "engine/metrics/raster.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace splice::reference {
@@ -16,5 +17,14 @@ using metrics::Rgb8;
 inline constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 using DepthImage = Raster<float>;  // distance from the eye along the view direction, or kNothing
+
+struct DepthRange {
+    float nearest = kNothing, farthest = -kNothing;  // as found: without any ray none; kNothing where rays met nothing
+
+    void include(float depth) {
+        nearest = std::min(nearest, depth);
+        farthest = std::max(farthest, depth);
+    }
+};
 
 }  // namespace splice::reference

@@ -14,10 +14,6 @@ void require_same_size(const Raster<A>& a, const Raster<B>& b) {
     if (a.width != b.width || a.height != b.height) throw std::invalid_argument("images of different sizes");
 }
 
-struct DepthRange {
-    float nearest = kNothing, farthest = -kNothing;
-};
-
 /// Over the covered pixels of the 3x3 neighbourhood.
 DepthRange depth_range(const DepthImage& depth, std::uint32_t x, std::uint32_t y) {
     DepthRange range;
@@ -26,27 +22,30 @@ DepthRange depth_range(const DepthImage& depth, std::uint32_t x, std::uint32_t y
             const std::int64_t nx = x + dx, ny = y + dy;
             if (nx < 0 || ny < 0 || nx >= depth.width || ny >= depth.height) continue;
             const float d = depth.at(static_cast<std::uint32_t>(nx), static_cast<std::uint32_t>(ny));
-            if (d == kNothing) continue;
-            range.nearest = std::min(range.nearest, d);
-            range.farthest = std::max(range.farthest, d);
+            if (d != kNothing) range.include(d);
         }
     return range;
 }
 
-/// How near the surface comes in the pixels up to `radius` away along each axis, looked at closer than the reference
-/// did until something is found that is `near_enough`.
-float nearest_within(const DepthImage& reference, std::uint32_t x, std::uint32_t y, double radius, float near_enough,
-                     const NearestInPixel& closer) {
+/// The surface in the pixels up to `radius` away along each axis, looked at closer than the reference did until what is
+/// found will do.
+template <typename WillDo>
+DepthRange range_within(const DepthImage& reference, std::uint32_t x, std::uint32_t y, double radius,
+                        const RangeInPixel& closer, const WillDo& will_do) {
     const auto reach = static_cast<std::int64_t>(radius);
-    float nearest = kNothing;
-    for (std::int64_t dy = -reach; dy <= reach && nearest > near_enough; ++dy)
-        for (std::int64_t dx = -reach; dx <= reach && nearest > near_enough; ++dx) {
+    DepthRange range;
+    for (std::int64_t dy = -reach; dy <= reach; ++dy)
+        for (std::int64_t dx = -reach; dx <= reach; ++dx) {
             const std::int64_t nx = x + dx, ny = y + dy;
             if (nx < 0 || ny < 0 || nx >= reference.width || ny >= reference.height) continue;
             const auto px = static_cast<std::uint32_t>(nx), py = static_cast<std::uint32_t>(ny);
-            nearest = std::min(nearest, closer ? closer(px, py) : reference.at(px, py));
+            const float centre = reference.at(px, py);
+            const DepthRange in_pixel = closer ? closer(px, py) : DepthRange{centre, centre};
+            range.include(in_pixel.nearest);
+            range.include(in_pixel.farthest);
+            if (will_do(range)) return range;
         }
-    return nearest;
+    return range;
 }
 
 }  // namespace
@@ -59,7 +58,7 @@ Mask covered(const DepthImage& depth) {
 }
 
 SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference, const Tolerance& tolerance,
-                            ColourImage* marked, const NearestInPixel& closer) {
+                            ColourImage* marked, const RangeInPixel& closer) {
     require_same_size(frame, reference);
     require_same_size(frame, tolerance.depth);
     require_same_size(frame, tolerance.radius_px);
@@ -82,7 +81,8 @@ SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference
                 }
                 if (!any_within(truth, x, y, 2, 0)) {
                     ++report.inside;
-                    if (shown > farthest + allowed) {
+                    const auto tolerated = [&](const DepthRange& range) { return shown <= range.farthest + allowed; };
+                    if (shown > farthest + allowed && !tolerated(range_within(reference, x, y, 1, closer, tolerated))) {
                         ++report.holes;
                         if (shown != kNothing)
                             report.worst_behind = std::max(report.worst_behind, double{shown} - farthest - allowed);
@@ -93,15 +93,17 @@ SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference
             if (shown == kNothing) continue;
             const double reach = std::max(2.0, 1.0 + tolerance.radius_px.at(x, y));
             if (nearest != kNothing && shown < nearest - allowed) {
-                const float excess = nearest_within(reference, x, y, 1, shown + allowed, closer) - allowed - shown;
-                if (excess > 0) {
+                const auto tolerated = [&](const DepthRange& range) { return range.nearest <= shown + allowed; };
+                const DepthRange range = range_within(reference, x, y, 1, closer, tolerated);
+                const float excess = range.nearest - allowed - shown;
+                if (!tolerated(range)) {
                     ++report.in_front;
                     report.worst_in_front = std::max(report.worst_in_front, double{excess});
                     mark({255, 0, 255});
                 }
             }
-            if (!any_within(truth, x, y, reach, 1) &&
-                nearest_within(reference, x, y, reach, std::numeric_limits<float>::max(), closer) == kNothing) {
+            const auto any = [](const DepthRange& range) { return range.nearest != kNothing; };
+            if (!any_within(truth, x, y, reach, 1) && !any(range_within(reference, x, y, reach, closer, any))) {
                 ++report.grown;
                 mark({255, 255, 0});
             }

@@ -37,9 +37,9 @@ struct Tolerance {
     Raster<float> radius_px;  // radius of the largest of their disks on screen
 };
 
-/// The nearest surface anywhere in a pixel, as a distance along the view direction, or kNothing. One ray a pixel steps
-/// over slivers; before a pixel counts as grown or in front, its neighbourhood is looked at closer.
-using NearestInPixel = std::function<float(std::uint32_t x, std::uint32_t y)>;
+/// The surface anywhere in a pixel: one ray a pixel steps over slivers and cracks, so before a pixel counts as a fault,
+/// its neighbourhood is looked at closer.
+using RangeInPixel = std::function<DepthRange(std::uint32_t x, std::uint32_t y)>;
 
 /// `frame` and `reference` hold distances along the view direction. The rules:
 ///  - hole: a pixel 2 px inside the reference that shows nothing, or a surface farther than the farthest reference
@@ -53,6 +53,6 @@ using NearestInPixel = std::function<float(std::uint32_t x, std::uint32_t y)>;
 /// `marked`, if given, receives a picture: grey reference, red holes, blue lost, yellow grown, magenta in front.
 /// `closer` sees what the reference's rays miss; without it the reference alone decides.
 SurfaceReport check_surface(const DepthImage& frame, const DepthImage& reference, const Tolerance& tolerance,
-                            ColourImage* marked = nullptr, const NearestInPixel& closer = {});
+                            ColourImage* marked = nullptr, const RangeInPixel& closer = {});
 
 }  // namespace splice::reference

@@ -174,15 +174,15 @@ DepthImage ReferenceScene::depth(const ReferenceView& view) const {
     return image;
 }
 
-float ReferenceScene::nearest_in_pixel(const ReferenceView& view, std::uint32_t x, std::uint32_t y,
-                                       std::uint32_t samples_per_side) const {
+DepthRange ReferenceScene::range_in_pixel(const ReferenceView& view, std::uint32_t x, std::uint32_t y,
+                                          std::uint32_t samples_per_side) const {
     const glm::dmat4 to_mesh = glm::inverse(view.view);
-    float nearest = kNothing;
+    DepthRange range;
     for (std::uint32_t j = 0; j < samples_per_side; ++j)
         for (std::uint32_t i = 0; i < samples_per_side; ++i)
-            nearest = std::min(nearest, impl_->depth_through(view, to_mesh, x + (i + 0.5) / samples_per_side,
-                                                             y + (j + 0.5) / samples_per_side));
-    return nearest;
+            range.include(impl_->depth_through(view, to_mesh, x + (i + 0.5) / samples_per_side,
+                                               y + (j + 0.5) / samples_per_side));
+    return range;
 }
 
 ColourImage ReferenceScene::shaded(const ReferenceView& view, const Shader& shader, const glm::vec3& background,

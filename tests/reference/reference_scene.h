@@ -53,9 +53,9 @@ class ReferenceScene {
     /// One ray a pixel, through its centre.
     DepthImage depth(const ReferenceView& view) const;
 
-    /// Of a grid of `samples_per_side`^2 rays through one pixel, how near the nearest hit is; kNothing without any.
-    float nearest_in_pixel(const ReferenceView& view, std::uint32_t x, std::uint32_t y,
-                           std::uint32_t samples_per_side = 16) const;
+    /// Of a grid of `samples_per_side`^2 rays through one pixel.
+    DepthRange range_in_pixel(const ReferenceView& view, std::uint32_t x, std::uint32_t y,
+                              std::uint32_t samples_per_side = 16) const;
 
     /// `samples_per_side`^2 stratified samples a pixel, averaged in linear light over `background` (linear), then
     /// sRGB-encoded. A single sample is taken at the pixel's centre.

@@ -141,11 +141,27 @@ TEST_CASE("slivers between the reference's rays count when a pixel is looked at 
     CHECK(check_surface(frame, reference, tolerance(0, 0)).in_front == 1);
     CHECK(check_surface(frame, reference, tolerance(0, 0)).grown == 1);
     const auto closer = [&](std::uint32_t x, std::uint32_t y) {
-        return x == 13 ? 0.5f : x == 16 && y > 23 ? 1.0f : reference.at(x, y);
+        const float depth = x == 13 ? 0.5f : x == 16 && y > 23 ? 1.0f : reference.at(x, y);
+        return DepthRange{depth, depth};
     };
     CHECK(check_surface(frame, reference, tolerance(0, 0), nullptr, closer).clean());
     frame.at(10, 10) = 0.5f;
     CHECK(check_surface(frame, reference, tolerance(0, 0), nullptr, closer).in_front == 1);
+}
+
+TEST_CASE("what shows through a crack of the reference itself is no hole") {
+    const DepthImage reference = square_reference();
+    DepthImage frame = reference;
+    frame.at(12, 12) = 2;
+    frame.at(18, 18) = kNothing;
+    CHECK(check_surface(frame, reference, tolerance(0, 0)).holes == 2);
+    const auto closer = [&](std::uint32_t x, std::uint32_t y) {
+        const float behind = x == 13 ? 2.0f : x == 18 && y == 17 ? kNothing : 1.0f;
+        return DepthRange{1.0f, behind};
+    };
+    CHECK(check_surface(frame, reference, tolerance(0, 0), nullptr, closer).clean());
+    frame.at(12, 12) = 2.5f;
+    CHECK(check_surface(frame, reference, tolerance(0, 0), nullptr, closer).holes == 1);
 }
 
 TEST_CASE("the marked picture shows each kind of fault in its own colour") {

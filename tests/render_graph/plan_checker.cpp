@@ -283,4 +283,42 @@ std::vector<std::vector<uint32_t>> find_sharers(const graph::Plan& plan,
     return sharers;
 }
 
+std::set<uint32_t> needed_passes(const graph::Graph& graph) {
+    const graph::Declaration& declaration = graph.declaration();
+    std::set<uint32_t> needed;
+    std::set<std::pair<uint32_t, uint32_t>> wanted;  // resource, version
+    std::vector<uint32_t> last_version(declaration.resources.size(), 0);
+    for (const graph::Access& access : declaration.accesses) {
+        if (graph::is_write(access.kind)) last_version[access.resource] = access.version + 1;
+    }
+    for (uint32_t resource = 0; resource < last_version.size(); ++resource) {
+        const graph::ResourceDeclaration& declared = declaration.resources[resource];
+        if (declared.imported && declaration.import_of(resource).wanted)
+            wanted.insert({resource, last_version[resource]});
+    }
+    for (bool grew = true; grew;) {
+        grew = false;
+        for (uint32_t pass = 0; pass < declaration.passes.size(); ++pass) {
+            if (needed.count(pass) != 0) continue;
+            bool take = declaration.passes[pass].side_effect;
+            for (const graph::Access& access : graph.accesses(pass)) {
+                take =
+                    take || (graph::is_write(access.kind) && wanted.count({access.resource, access.version + 1}) != 0);
+            }
+            if (!take) continue;
+            needed.insert(pass);
+            grew = true;
+            for (const graph::Access& access : graph.accesses(pass)) {
+                if (!graph::is_write(access.kind) || access.contents == graph::ContentsKind::keep) {
+                    wanted.insert({access.resource, access.version});
+                    if (declaration.resources[access.resource].history == graph::HistoryRole::previous) {
+                        wanted.insert({access.resource + 1, last_version[access.resource + 1]});
+                    }
+                }
+            }
+        }
+    }
+    return needed;
+}
+
 }  // namespace splice::test

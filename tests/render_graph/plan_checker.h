@@ -6,6 +6,7 @@
 #include "engine/render_graph/graph.h"
 #include "engine/render_graph/plan.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ std::vector<std::string> find_flaws(const graph::Graph& graph, const graph::Plan
 /// Passes that are not exactly once in the order or culled, culled or reordered side effects, groups that do not tile
 /// the order.
 std::vector<std::string> find_disorder(const graph::Graph& graph, const graph::Plan& plan);
+
+/// The passes that a side effect or the outside needs, by brute force over versions: what culling has to keep.
+std::set<uint32_t> needed_passes(const graph::Graph& graph);
 
 /// For each resource, those that share bytes with it.
 std::vector<std::vector<uint32_t>> find_sharers(const graph::Plan& plan,

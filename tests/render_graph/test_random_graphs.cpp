@@ -1,6 +1,7 @@
 // Properties of compile() over random frames, judged by a checker that shares nothing with it.
 #include "engine/render_graph/compile.h"
 #include "tests/render_graph/hazard_checker.h"
+#include "tests/render_graph/plan_checker.h"
 #include "tests/render_graph/random_graph.h"
 
 #include <catch2/catch.hpp>
@@ -87,45 +88,6 @@ bool needs_contents_after(const Frame& frame, uint32_t resource, uint32_t group)
     return false;
 }
 
-/// Which passes a side effect or the outside needs, by brute force over versions.
-std::set<uint32_t> needed_passes(const graph::Graph& graph) {
-    const graph::Declaration& declaration = graph.declaration();
-    std::set<uint32_t> needed;
-    std::set<std::pair<uint32_t, uint32_t>> wanted;  // resource, version
-    std::vector<uint32_t> last_version(declaration.resources.size(), 0);
-    for (const graph::Access& access : declaration.accesses) {
-        if (graph::is_write(access.kind)) last_version[access.resource] = access.version + 1;
-    }
-    for (uint32_t resource = 0; resource < last_version.size(); ++resource) {
-        const graph::ResourceDeclaration& declared = declaration.resources[resource];
-        if (declared.imported && declaration.import_of(resource).wanted)
-            wanted.insert({resource, last_version[resource]});
-    }
-    for (bool grew = true; grew;) {
-        grew = false;
-        for (uint32_t pass = 0; pass < declaration.passes.size(); ++pass) {
-            if (needed.count(pass) != 0) continue;
-            bool take = declaration.passes[pass].side_effect;
-            for (const graph::Access& access : graph.accesses(pass)) {
-                take =
-                    take || (graph::is_write(access.kind) && wanted.count({access.resource, access.version + 1}) != 0);
-            }
-            if (!take) continue;
-            needed.insert(pass);
-            grew = true;
-            for (const graph::Access& access : graph.accesses(pass)) {
-                if (!graph::is_write(access.kind) || access.contents == graph::ContentsKind::keep) {
-                    wanted.insert({access.resource, access.version});
-                    if (declaration.resources[access.resource].history == graph::HistoryRole::previous) {
-                        wanted.insert({access.resource + 1, last_version[access.resource + 1]});
-                    }
-                }
-            }
-        }
-    }
-    return needed;
-}
-
 }  // namespace
 
 TEST_CASE("a compiled random frame has no hazard, no wrong layout and no lost contents") {
@@ -170,7 +132,7 @@ TEST_CASE("long frames that share much memory have no hazard") {
 TEST_CASE("exactly the passes that something needs are kept") {
     REQUIRE(rc::check("culling", [] {
         const auto frame = random_frame(200);
-        const std::set<uint32_t> needed = needed_passes(frame->graph);
+        const std::set<uint32_t> needed = test::needed_passes(frame->graph);
         const std::set<uint32_t> kept(frame->plan.order.begin(), frame->plan.order.end());
         if (frame->options.cull) {
             RC_ASSERT(kept == needed);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <memory>
 
 namespace splice::bench {
@@ -69,8 +70,8 @@ ExampleGraph example_of(const Family& family, uint64_t seed) {
     return example_graph(graph, std::string(family.name));
 }
 
-void run_on_device(const GraphBenchOptions& options, const std::vector<Family>& chosen, gpu::Device& device,
-                   GraphReport& report) {
+void run_on_device(const GraphBenchOptions& options, const std::vector<Family>& chosen,
+                   const std::vector<uint32_t>& sizes, gpu::Device& device, GraphReport& report) {
     for (const Family& family : chosen) {
         const DeviceWorkload workload =
             family.name == kFrameFamily
@@ -78,6 +79,14 @@ void run_on_device(const GraphBenchOptions& options, const std::vector<Family>& 
                 : painted_workload(device, family, kDevicePasses, kDeviceSide, kDeviceSide, options.seed);
         report.on_device.push_back(measure_device(device, workload, options.repeat, options.progress));
     }
+    RecordGrowthMeasurement growth;
+    std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(growth.families),
+                 [](const Family& family) { return family.name != kFrameFamily; });
+    growth.sizes = sizes;
+    growth.seed = options.seed;
+    growth.rounds = options.repeat;
+    growth.progress = options.progress;
+    report.record_growth = measure_record_growth(device, growth);
     for (const uint32_t objects : {1U, 16U, 64U}) {
         options.progress("recording through the graph and by hand");
         report.recorded.push_back(measure_record(device, objects, kRecordRounds * options.repeat));
@@ -125,7 +134,7 @@ GraphReport bench_graph(const GraphBenchOptions& options) {
         if (family.name == "layered-local" || family.name == "deferred" || family.name == kFrameFamily)
             report.examples.push_back(example_of(family, options.seed));
     }
-    if (gpu) run_on_device(options, measurement.families, gpu->device, report);
+    if (gpu) run_on_device(options, measurement.families, measurement.sizes, gpu->device, report);
     options.progress("");
     return report;
 }

@@ -39,6 +39,10 @@ Figures figures_of(const json& report) {
             add_count(figures, name + ": transient bytes", variant.at("transient_bytes"));
         }
     }
+    for (const json& row : report.at("record_growth")) {
+        add_time(figures, graph_name(row) + ": record empty, us", row.at("record_us"), 1);
+        add_time(figures, graph_name(row) + ": hit, us", row.at("hit_us"), 1);
+    }
     for (const json& row : report.at("record")) {
         const std::string name = fmt::format("record, {} objects", row.at("objects").get<uint64_t>());
         for (const char* way : {"by_hand_us", "through_graph_us", "declared_anew_us"})

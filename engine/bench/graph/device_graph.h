@@ -21,6 +21,7 @@ class DeviceGraph {
         graph_.clear();
         declare_(graph_);
     }
+    void prepare() { executor_.prepare(graph_); }
     void record(VkCommandBuffer commands) { executor_.execute(graph_, bindings_, commands); }
     const graph::Graph& graph() const { return graph_; }
     const graph::Executor& executor() const { return executor_; }

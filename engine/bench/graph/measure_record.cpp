@@ -5,9 +5,12 @@
 #include "engine/bench/graph/hand_written_deferred.h"
 #include "engine/bench/graph/painter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string_view>
@@ -40,7 +43,47 @@ std::function<void(graph::Graph&)> declare_view(const std::shared_ptr<Painter>& 
     return [declare = deferred->declare, options](graph::Graph& graph) { declare(graph, options); };
 }
 
+RecordGrowthResult measure_growth_of(gpu::Device& device, const Family& family, const FamilyOptions& options,
+                                     uint32_t rounds) {
+    graph::ExecutorOptions executor_options;
+    executor_options.timestamps = false;
+    DeviceGraph graph(
+        device, [&](graph::Graph& anew) { family.declare(anew, options); }, executor_options);
+    const auto record = [&](VkCommandBuffer commands) { graph.record(commands); };
+    record_us(device, record);
+    std::vector<double> recorded, hits;
+    for (uint32_t round = 0; round < rounds; ++round) {
+        recorded.push_back(record_us(device, record));
+        graph.declare_anew();
+        const Clock::time_point start = Clock::now();
+        graph.prepare();
+        hits.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+    }
+    const graph::ExecutorStatistics& statistics = graph.executor().statistics();
+    return {std::string(family.name), options.passes,
+            statistics.render_passes, statistics.image_barriers + statistics.buffer_barriers,
+            summarise(recorded),      summarise(hits)};
+}
+
 }  // namespace
+
+std::vector<RecordGrowthResult> measure_record_growth(gpu::Device& device, const RecordGrowthMeasurement& measurement) {
+    std::vector<RecordGrowthResult> results;
+    for (const Family& family : measurement.families) {
+        for (const uint32_t passes : measurement.sizes) {
+            measurement.progress(fmt::format("record {} of {} passes", family.name, passes));
+            FamilyOptions options;
+            options.passes = passes;
+            options.seed = measurement.seed;
+            options.sizes = ImageSizes::log_uniform;
+            options.log2_min_pixels = 4;
+            options.log2_max_pixels = 2 * std::log2(static_cast<double>(kSide));
+            options.paint = [](graph::Graph&, graph::Pass& pass) { pass.record([](const graph::PassContext&) {}); };
+            results.push_back(measure_growth_of(device, family, options, measurement.rounds));
+        }
+    }
+    return results;
+}
 
 RecordResult measure_record(gpu::Device& device, uint32_t objects, uint32_t rounds) {
     const PassShaders shaders(device);

@@ -68,6 +68,14 @@ struct RecordResult {
     bool same_image = false;
 };
 
+/// How recording grows with a graph whose passes record nothing of their own: what the graph itself adds.
+struct RecordGrowthResult {
+    std::string family;
+    uint32_t passes = 0, render_passes = 0, barriers = 0;
+    Sample record_us;  ///< Executor::execute() of a graph that stays
+    Sample hit_us;     ///< Executor::prepare() of a graph declared anew, its plan known
+};
+
 /// What the lifetime chart shows.
 struct PlacedResource {
     std::string name;
@@ -103,6 +111,7 @@ struct GraphReport {
     std::vector<MemoryResult> memory;
     std::vector<DeviceResult> on_device;
     std::vector<RecordResult> recorded;
+    std::vector<RecordGrowthResult> record_growth;
     std::vector<ExampleGraph> examples;
 };
 

@@ -14,13 +14,16 @@
 namespace splice::bench {
 namespace {
 
+constexpr uint32_t kGoalPasses = 1024;
+
 std::string compile_tiles(const GraphReport& report) {
     std::string tiles;
     for (const CompileResult* result : typical_results(report)) {
         if (result->family != "layered") continue;
         const double ns = result->compile_ns.median / result->passes;
         tiles += tile(fmt::format("{:.0f} ns", ns), fmt::format("a pass to compile {} passes, layered", result->passes),
-                      "goal: at most 1000", ns <= 1000);
+                      result->passes == kGoalPasses ? "goal: at most 1000" : "the goal is of 1,024 passes",
+                      result->passes != kGoalPasses || ns <= 1000);
         const double hit_us = result->cache_hit_ns.median / 1000;
         tiles += tile(fmt::format("{:.1f} us", hit_us), "to find that it is compiled already", "goal: below 10",
                       hit_us < 10);
@@ -96,6 +99,20 @@ std::string record_section(const GraphReport& report) {
            "</section>\n";
 }
 
+std::string record_growth_section(const GraphReport& report) {
+    if (report.record_growth.empty()) return "";
+    std::vector<std::vector<std::string>> rows;
+    for (const RecordGrowthResult& result : report.record_growth) {
+        rows.push_back({fmt::format("{} {}", result.family, result.passes), fmt::format("{}", result.render_passes),
+                        fmt::format("{}", result.barriers), fmt::format("{:.1f}", result.record_us.median),
+                        fmt::format("{:.0f}", result.record_us.median * 1000 / result.passes),
+                        fmt::format("{:.1f}", result.hit_us.median)});
+    }
+    return "<section>\n<h2>Recording against size</h2>\n<p class=\"caption\">Passes that record nothing of their own: "
+           "what the graph adds. A hit finds the plan of a graph declared anew.</p>\n" +
+           html_table({"graph", "render passes", "barriers", "us", "ns a pass", "hit, us"}, rows) + "</section>\n";
+}
+
 std::string example_sections(const GraphReport& report) {
     std::string text;
     for (const ExampleGraph& example : report.examples) {
@@ -130,7 +147,7 @@ std::string report_html(const GraphReport& report) {
                    "The lower bound is the most that is alive at once. The worst of the seeds; dashed: the goal, 1.10.",
                    draw_memory(report));
     body += example_sections(report);
-    body += device_section(report) + record_section(report);
+    body += device_section(report) + record_growth_section(report) + record_section(report);
     return page("Render graph benchmark", caption, body);
 }
 

@@ -83,6 +83,15 @@ json recorded(const RecordResult& result) {
             {"same_image", result.same_image}};
 }
 
+json record_growth(const RecordGrowthResult& result) {
+    return {{"family", result.family},
+            {"passes", result.passes},
+            {"render_passes", result.render_passes},
+            {"barriers", result.barriers},
+            {"record_us", json_of(result.record_us)},
+            {"hit_us", json_of(result.hit_us)}};
+}
+
 }  // namespace
 
 json to_json(const GraphReport& report) {
@@ -96,7 +105,8 @@ json to_json(const GraphReport& report) {
             {"growth", list(report.growth, growth)},
             {"memory", list(report.memory, memory)},
             {"on_device", list(report.on_device, on_device)},
-            {"record", list(report.recorded, recorded)}};
+            {"record", list(report.recorded, recorded)},
+            {"record_growth", list(report.record_growth, record_growth)}};
 }
 
 }  // namespace splice::bench

@@ -9,7 +9,7 @@ namespace splice::bench {
 
 /// What "benchmark" says in a report of `splice-bench graph`.
 inline constexpr const char* kReportKind = "splice-bench graph";
-inline constexpr int kReportVersion = 1;
+inline constexpr int kReportVersion = 2;
 
 nlohmann::json to_json(const GraphReport& report);
 

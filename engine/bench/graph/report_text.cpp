@@ -124,6 +124,18 @@ std::string record_table(const GraphReport& report) {
     return table.text();
 }
 
+std::string record_growth_table(const GraphReport& report) {
+    Table table({"record, empty passes", "passes", "render passes", "barriers", "us", "least", "ns a pass", "hit, us"});
+    for (const RecordGrowthResult& result : report.record_growth) {
+        table.add({result.family, fmt::format("{}", result.passes), fmt::format("{}", result.render_passes),
+                   fmt::format("{}", result.barriers), fmt::format("{:.1f}", result.record_us.median),
+                   fmt::format("{:.1f}", result.record_us.minimum),
+                   fmt::format("{:.0f}", result.record_us.median * 1000 / result.passes),
+                   fmt::format("{:.1f}", result.hit_us.median)});
+    }
+    return table.text();
+}
+
 }  // namespace
 
 std::vector<const CompileResult*> typical_results(const GraphReport& report) {
@@ -146,6 +158,7 @@ std::string report_text(const GraphReport& report) {
     text +=
         growth_table(report) + "\n" + phase_table(typical) + "\n" + plan_table(typical) + "\n" + memory_table(report);
     if (!report.on_device.empty()) text += "\n" + device_table(report);
+    if (!report.record_growth.empty()) text += "\n" + record_growth_table(report);
     if (!report.recorded.empty()) text += "\n" + record_table(report);
     return text;
 }

@@ -214,6 +214,10 @@ Executor::Executor(gpu::Device& device, const ExecutorOptions& options)
 
 Executor::~Executor() = default;
 
+void Executor::prepare(const Graph& graph) {
+    state_->current = &state_->find_or_compile(graph);
+}
+
 void Executor::execute(const Graph& graph, const Bindings& bindings, VkCommandBuffer commands, uint32_t frame_slot) {
     State& state = *state_;
     if (frame_slot >= state.slots.size()) {

@@ -92,6 +92,10 @@ class Executor {
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
+    /// Compiles the graph and makes its Vulkan objects unless that was done before: execute() will not have to. Throws
+    /// GraphError and DeviceError.
+    void prepare(const Graph& graph);
+
     /// Records the whole frame, compiling the graph if its structure is new. frame_slot < frames_in_flight: the work
     /// submitted for this slot before has finished. Throws GraphError (an imported resource that is not bound, or does
     /// not match its declaration) and DeviceError.

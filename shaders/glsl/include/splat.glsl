@@ -87,14 +87,18 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
 }
 
 const vec3 NO_CLIP = vec3(0, 0, 1);
+// A cut ends where triangles begin, whose corners the rasteriser moves by up to half a 256th of a pixel: a cut reaches a
+// hair farther, or the pixels whose centres lie in between would show neither.
+const float CLIP_SLACK = 1.0 / 128.0;  // pixels
 
 // The disk is kept where clip.xy . (u, v) <= clip.z; times e, that is l.d + l0 <= 0. Returns l, l0 and what the change of
 // that a radius along the normal takes.
 vec4 clip_line(vec3 clip, Splat splat) {
-    const vec2 l = vec2(dot(clip.xy, splat.plane_map.xy), dot(clip.xy, splat.plane_map.zw));
+    vec2 l = vec2(dot(clip.xy, splat.plane_map.xy), dot(clip.xy, splat.plane_map.zw));
     const float l0 = dot(clip.xy, splat.plane_offset) - clip.z;
     const float skewed = dot(clip.xy, splat.skew.xy);
-    return ORTHOGRAPHIC ? vec4(l, l0, skewed) : vec4(l + l0 * splat.g, l0, clip.z + skewed);
+    if (!ORTHOGRAPHIC) l += l0 * splat.g;
+    return vec4(l, l0 - CLIP_SLACK * length(l), ORTHOGRAPHIC ? skewed : clip.z + skewed);
 }
 
 // `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` and `epsilon` in world units. False: nothing

@@ -35,6 +35,7 @@ struct InstanceDraws {
     std::vector<DrawRange> triangles;
     std::vector<DrawRange> sprites;  // surfels that fit a point: small, and wholly inside the frustum
     std::vector<DrawRange> quads;    // the others
+    std::vector<DrawRange> small;    // instead of either: those of DrawListOptions::small_px
 };
 
 struct DrawList {
@@ -58,6 +59,7 @@ struct DrawListOptions {
     bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
     double max_point_size = 255;  // pixels, of the device
+    double small_px = 0;          // patches whose splats are all at most this wide go to InstanceDraws::small
 };
 
 DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,

@@ -2,11 +2,6 @@
 
 #include "tests/reference/comparison.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <cstdio>
-
 namespace splice::bench {
 namespace {
 
@@ -33,10 +28,6 @@ std::vector<NamedCamera> bench_cameras(const Box& bounds, const QualityOptions& 
                                                                              options.height, options.orthographic)});
     }
     return cameras;
-}
-
-void show_progress(std::string_view text) {
-    if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", text);
 }
 
 }  // namespace splice::bench

@@ -1,9 +1,11 @@
-// What the two quality benchmarks share: the cameras that a model is seen from, and telling the user how far they are.
+// What the two quality benchmarks share: the cameras that a model is seen from.
 #pragma once
 
 #include "engine/bench/bench_quality.h"
+#include "engine/bench/report/progress.h"
 
-#include <string_view>
+#include <string>
+#include <vector>
 
 namespace splice::bench {
 
@@ -13,8 +15,5 @@ struct NamedCamera {
 };
 
 std::vector<NamedCamera> bench_cameras(const Box& bounds, const QualityOptions& options);
-
-/// Tells the terminal what is going on; an empty text wipes the line. Nothing where stderr is no terminal.
-void show_progress(std::string_view text);
 
 }  // namespace splice::bench

@@ -84,8 +84,8 @@ struct Measured {
 Measured turn_round(Renderer& renderer, const Scene& scene, CaptureSettings settings, unsigned frames) {
     Measured mean;
     for (unsigned i = 0; i <= frames; ++i) {
-        settings.camera =
-            frame_camera(scene.bounds(), {.azimuth_degrees = 360.0 * i / frames, .elevation_degrees = 10}, kSide, kSide);
+        settings.camera = frame_camera(scene.bounds(), {.azimuth_degrees = 360.0 * i / frames, .elevation_degrees = 10},
+                                       kSide, kSide);
         const FrameStats stats = renderer.render(scene, settings).stats;
         if (i == 0) continue;  // compiles shaders
         mean.splats += static_cast<double>(stats.surfels_drawn) / frames;

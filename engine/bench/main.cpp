@@ -1,9 +1,9 @@
 // splice-bench: measures the bake, the frames and their truth, and the render graph. Not a test: figures depend on the
 // machine.
 #include "engine/bench/bench_bake.h"
-#include "engine/bench/bench_frame.h"
 #include "engine/bench/bench_quality.h"
 #include "engine/bench/confetti_command.h"
+#include "engine/bench/frame/frame_command.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
 #include "engine/scene/scene_file.h"
@@ -101,19 +101,6 @@ int run(int argc, char** argv) {
     bake.add_option("--with", line.bake.arguments, "An argument for splice-bake, e.g. --with=--triangle-share=0.19")
         ->take_all();
 
-    CommandLine frame_line = line;
-    bench::FrameBenchOptions frame_options;
-    CLI::App& frame = *app.add_subcommand("frame", "Frame times of the splat backends, interleaved");
-    frame.add_option("FILE", frame_line.files,
-                     "Models, scenes or meshes; without any: the bumpy sphere of 50k, 300k and 1M disks, ten deep");
-    frame.add_option("--json", frame_line.json, "Write all figures to this file");
-    frame.add_option("--device", frame_options.device, "auto, cpu, or an index of splice-capture --list-devices")
-        ->capture_default_str();
-    frame.add_option("--size", frame_line.size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
-    frame.add_option("--rounds", frame_options.rounds, "Timed frames a backend and scene")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-
     CommandLine capture_line = line, holes_line = line;
     CLI::App& capture =
         *app.add_subcommand("capture", "PSNR of hybrid and triangles against 64 samples a pixel; frame times");
@@ -147,6 +134,9 @@ int run(int argc, char** argv) {
         [&](const std::string& name) { holes_line.quality.bake.cluster.representation = representation_of_name(name); },
         "hybrid (default), triangles or surfels");
 
+    bench::FrameCommand frame_command;
+    const CLI::App& frame = bench::add_frame_command(app, frame_command);
+
     bench::GraphCommand graph_command;
     const CLI::App& graph = bench::add_graph_command(app, graph_command);
 
@@ -167,6 +157,10 @@ int run(int argc, char** argv) {
         bench::run_quality_command(quality_command);
         return 0;
     }
+    if (frame.parsed()) {
+        bench::run_frame_command(frame_command);
+        return 0;
+    }
     if (graph.parsed()) {
         bench::run_graph_command(graph_command);
         return 0;
@@ -179,13 +173,6 @@ int run(int argc, char** argv) {
         report_file = line.json;
         if (!report_file.empty()) check_output_path(report_file);
         report = bench::bench_bake(bench::bench_models(line.files, line.folder), line.bake);
-    } else if (frame.parsed()) {
-        report_file = frame_line.json;
-        if (!report_file.empty()) check_output_path(report_file);
-        parse_size(frame_line);
-        frame_options.width = frame_line.quality.width;
-        frame_options.height = frame_line.quality.height;
-        report = bench::bench_frame(frame_line.files, frame_options);
     } else {
         CommandLine& chosen = capture.parsed() ? capture_line : holes_line;
         parse_size(chosen);

@@ -37,8 +37,8 @@ class Image;
 struct RendererOptions {
     std::string device = "auto";  // auto: a real GPU if there is one, else lavapipe; cpu; or an index of list_devices
     bool validate = false;        // validation and synchronisation-validation layers
-    std::uint64_t most_tile_groups = 0;  // groups of 64 surfels the tile backend works on at once; 0: all that fit
-    graph::ExecutorOptions graph = {};   // switches of the render graph, and what it measures of each pass
+    std::uint64_t most_splat_groups = 0;  // groups of 64 surfels that compute passes work on at once; 0: all that fit
+    graph::ExecutorOptions graph = {};    // switches of the render graph, and what it measures of each pass
 };
 
 struct CaptureSettings {
@@ -59,7 +59,9 @@ struct CaptureSettings {
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
     double tau = 0;  // pixels by which a level of detail may be off (engine/scene/lod_cut.h); 0: full detail
     Backend backend = Backend::kSprite;
-    bool force_quads = false;  // draw every surfel as an oriented quad, none as a point sprite
+    std::optional<double> points_below = {};  // pixels: patches whose splats are all at most this wide are drawn as
+                                              // points by every backend but sprites; none: as the backend chooses
+    bool force_quads = false;                 // draw every surfel as an oriented quad, none as a point sprite
     friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
 };
 
@@ -79,9 +81,15 @@ struct CutStats {
     double gather_ms = 0;
 };
 
+struct DrawnBy {
+    Backend backend;
+    std::uint64_t surfels;  // sent to it, after culling by patch
+};
+
 struct FrameStats {
     std::string device;
-    Backend backend = Backend::kSprite;  // that drew the frame
+    Backend backend = Backend::kSprite;  // that drew the frame, or most of its surfels
+    std::vector<DrawnBy> drawn_by;       // all that drew some
     Shading shading = Shading::kSurfel;
     std::uint32_t antialias = 1;      // samples along each side of a pixel
     double frame_ms = 0;              // submission to completion of the frame, readback included
@@ -91,6 +99,7 @@ struct FrameStats {
     CutStats cut = {};
     std::uint64_t covered_pixels = 0;  // at least by half
     double overlap_mean = 0;           // surfels contributing to a pixel, over pixels with any; with want_overlap
+    std::uint64_t fragments = 0;       // contributions of surfels to pixels, all together; with want_overlap
 };
 
 struct Frame {

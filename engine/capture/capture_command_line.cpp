@@ -111,7 +111,7 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, kernel;
+        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, kernel, points_below;
     bool one_sided = false, two_sided = false;
 };
 
@@ -133,6 +133,8 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     }
     if (!raw.view.empty()) command.view = parse_named(kViewNames, raw.view, "--view");
     if (!raw.backend.empty()) command.backend = parse_named(kBackendNames, raw.backend, "--backend");
+    if (!raw.points_below.empty())
+        command.points_below = parse_in_range(raw.points_below, "--points-below", 0, kLargestPoint, " pixels");
     if (!raw.show.empty()) command.shown = parse_named(kShownNames, raw.show, "--show");
     if (!raw.height.empty())
         command.orthographic_height = parse_in_range(raw.height, "--height", 1e-30, 1e30, " world units");
@@ -231,9 +233,14 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_option("--view", raw.view, view_help())->option_text("VIEW");
     app.add_option(
            "--backend", raw.backend,
-           "What draws surfels: sprite (point sprites), tile (compute shaders) or auto (default: tile on software "
-           "devices, else sprite). Sprites draw what tiles cannot; --stats tells")
-        ->option_text("auto|sprite|tile");
+           "What draws surfels: sprite (point sprites), raster (a triangle fitted to each, from a culled list), tile "
+           "(compute shaders, by screen tile), point (compute shaders, where they are small, else as raster) or auto "
+           "(default: tile on software devices; else raster, and points where they are tiny). --stats tells")
+        ->option_text("auto|sprite|raster|tile|point");
+    app.add_option("--points-below", raw.points_below,
+                   "Patches whose splats are all at most so many pixels wide are drawn as points, 0 to 64, by every "
+                   "backend but sprite")
+        ->option_text("PX");
     app.add_option(
            "--show", raw.show,
            "hybrid (as baked, default), triangles (surfel patches by the triangles they were sampled from, too) "

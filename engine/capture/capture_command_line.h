@@ -24,6 +24,7 @@ struct CaptureCommand {
     std::uint32_t orbit = 0;                    // frames, 0: a single picture
     std::optional<View> view;
     std::optional<Backend> backend;
+    std::optional<double> points_below;  // pixels
     std::optional<Shown> shown;
     std::optional<Background> background;
     std::optional<Sides> sides;

@@ -23,7 +23,7 @@ struct Renderer::Implementation {
         : own(std::make_unique<OwnDevice>(options)),
           device(own->device),
           executor(device, options.graph),
-          passes(device, options.most_tile_groups),
+          passes(device, options.most_splat_groups),
           cut_store(device) {}
     explicit Implementation(gpu::Device& borrowed)
         : device(borrowed), executor(device), passes(device), cut_store(device) {}
@@ -76,7 +76,7 @@ std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
     return values;
 }
 
-double mean_overlap(const std::vector<float>& counts) {
+void count_overlap(FrameStats& stats, const std::vector<float>& counts) {
     double sum = 0;
     std::uint64_t pixels = 0;
     for (const float count : counts) {
@@ -84,7 +84,8 @@ double mean_overlap(const std::vector<float>& counts) {
         sum += count;
         ++pixels;
     }
-    return pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+    stats.overlap_mean = pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+    stats.fragments = static_cast<std::uint64_t>(sum);
 }
 
 std::uint8_t encoded(double channel) {
@@ -126,7 +127,9 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                               .epsilon_scale = settings.epsilon_scale,
                               .prefilter = settings.prefilter,
                               .kernel = settings.kernel,
-                              .shading = settings.shading};
+                              .shading = settings.shading,
+                              .lighting = lighting_flags(scene.lighting)};
+    const SurfelBackend backend = choose_backend(settings.backend, settings.points_below, passes, frame);
     const DrawListOptions list_options{
         .sides = settings.sides,
         .draw_triangles = settings.draw_triangles && settings.shown != Shown::kSurfels &&
@@ -136,6 +139,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
+        .small_px = backend.small_px,
         .tau = settings.tau * antialias};
     DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
     const auto selected = Clock::now();
@@ -143,7 +147,6 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     const auto gathered = Clock::now();
     passes.data.update(frame, scene.lighting, scene.background);
 
-    const Backend backend = choose_backend(settings.backend, device, passes, frame);
     graph.clear();
     graph::Bindings bindings;
     use_picture(bindings, add_frame(graph, bindings, passes, backend, frame, scene.background, draws));
@@ -156,7 +159,10 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                       milliseconds(selected, gathered)};
     for (const graph::PassTiming& timing : executor.timings())
         stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
-    stats->backend = backend;
+    for (const BackendShare& share : backend_shares(backend, draws)) {
+        if (stats->drawn_by.empty() || share.surfels > stats->drawn_by.front().surfels) stats->backend = share.backend;
+        stats->drawn_by.push_back({share.backend, share.surfels});
+    }
     stats->antialias = antialias;
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;
@@ -210,7 +216,7 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
                                        static_cast<std::uint8_t>(background.transparent ? 0 : 255)};
         frame.rgba = picture_of_numbers(settings.view, values, settings.width, settings.height, empty).rgba;
         if (settings.view == View::kDepth) frame.depth = values;
-        if (settings.view == View::kOverlap) frame.stats.overlap_mean = mean_overlap(values);
+        if (settings.view == View::kOverlap) count_overlap(frame.stats, values);
     } else {
         frame.rgba.resize(raw.size());
         std::memcpy(frame.rgba.data(), raw.data(), raw.size());
@@ -224,8 +230,7 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
     if (settings.want_depth && frame.depth.empty())
         frame.depth = floats_of(engine.render_raw(scene, settings, camera, View::kDepth, nullptr));
     if (settings.want_overlap && settings.view != View::kOverlap)
-        frame.stats.overlap_mean =
-            mean_overlap(floats_of(engine.render_raw(scene, settings, camera, View::kOverlap, nullptr)));
+        count_overlap(frame.stats, floats_of(engine.render_raw(scene, settings, camera, View::kOverlap, nullptr)));
     return frame;
 }
 

@@ -36,6 +36,7 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.view = command.view.value_or(scene.view);
     settings.shown = command.shown.value_or(settings.shown);
     settings.backend = command.backend.value_or(Backend::kAuto);
+    settings.points_below = command.points_below;
     settings.sides = command.sides.value_or(scene.sides);
     settings.epsilon_scale = command.epsilon_scale.value_or(scene.epsilon_scale);
     settings.prefilter = command.prefilter.value_or(scene.prefilter);

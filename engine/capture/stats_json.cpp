@@ -36,6 +36,9 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
     nlohmann::ordered_json json;
     json["device"] = stats.device;
     json["backend"] = name_of(stats.backend);
+    json["drawn_by"] = nlohmann::ordered_json::object();
+    for (const DrawnBy& share : stats.drawn_by)
+        json["drawn_by"][std::string(name_of(share.backend))] = share.surfels;
     json["shading"] = name_of(stats.shading);
     json["antialias"] = stats.antialias;
     json["frame_ms"] = stats.frame_ms;

@@ -2,6 +2,7 @@
 
 #include "preprocess/model_format/error.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace splice {
@@ -11,13 +12,13 @@ FrameFormats::FrameFormats(const gpu::Device& device)
       accumulation(device.first_supported({VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT},
                                           VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT)) {}
 
-FramePasses::FramePasses(gpu::Device& device, std::uint64_t most_tile_groups)
+FramePasses::FramePasses(gpu::Device& device, std::uint64_t most_splat_groups)
     : data(device),
       formats(device),
       triangle(device, data),
       surfel_visibility(device, data),
       surfel_attribute(device, data),
-      tile(device, data, most_tile_groups),
+      splats(device, data, most_splat_groups),
       surfel_normalise(device, data),
       resolve(device, data) {}
 
@@ -25,14 +26,30 @@ VkFormat picture_format(View view) {
     return is_numeric(view) ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
 }
 
-Backend choose_backend(Backend wanted, const gpu::Device& device, const FramePasses& passes,
-                       const FrameSettings& settings) {
-    const bool tiles = wanted == Backend::kTile || (wanted == Backend::kAuto && device.info().is_cpu());
-    return tiles && passes.tile.can_draw(settings) ? Backend::kTile : Backend::kSprite;
+SurfelBackend choose_backend(Backend wanted, std::optional<double> points_below, const FramePasses& passes,
+                             const FrameSettings& settings) {
+    const std::optional<Techniques> techniques = passes.splats.choose(wanted, settings);
+    const bool by_size = techniques && techniques->small != techniques->others;
+    return {techniques,
+            by_size ? std::min(points_below.value_or(passes.splats.default_points_below(wanted)), kLargestPoint) : 0};
 }
 
-graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes, Backend backend,
-                             const FrameSettings& settings, const Background& background, const DrawList& draws) {
+std::vector<BackendShare> backend_shares(const SurfelBackend& backend, const DrawList& draws) {
+    std::uint64_t small = 0;
+    for (const InstanceDraws& instance : draws.instances)
+        for (const DrawRange& range : instance.small)
+            small += range.count;
+    const std::uint64_t others = draws.surfels - small;
+    if (!backend.techniques) return {{Backend::kSprite, draws.surfels}};
+    const Backend of_small = backend_of(backend.techniques->small), of_others = backend_of(backend.techniques->others);
+    if (others == 0 && small > 0) return {{of_small, small}};
+    if (small == 0) return {{of_others, others}};
+    return {{of_others, others}, {of_small, small}};
+}
+
+graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes,
+                             const SurfelBackend& backend, const FrameSettings& settings, const Background& background,
+                             const DrawList& draws) {
     const auto image = [&](const char* name, VkFormat format) {
         return graph.create_image(name, {.format = format, .width = settings.width, .height = settings.height});
     };
@@ -44,16 +61,17 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
         .depth = image("depth", passes.formats.depth_stencil),
         .accumulation = image("accumulation", passes.formats.accumulation),
         .normals = {},
+        .splat_depth = {},
         .picture = several ? image("samples", kSampleFormat) : image("picture", picture_format(settings.view)),
     };
 
     if (is_deferred(settings)) targets.normals = image("normals", passes.formats.accumulation);
 
     passes.triangle.add(graph, targets, settings, draws);
-    if (backend == Backend::kTile) {
-        passes.tile.add(graph, bindings, targets, settings, background, draws);
-        if (!TilePasses::composes(settings))
-            passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kWeight);
+    if (backend.techniques && (draws.surfels > 0 || backend.techniques->others == Technique::kTile)) {
+        const std::optional<SurfelOwnership> ownership =
+            passes.splats.add(graph, bindings, targets, settings, background, draws, *backend.techniques);
+        if (ownership) passes.surfel_normalise.add(graph, targets, settings, background, *ownership);
     } else {
         passes.surfel_visibility.add(graph, targets, settings, draws);
         passes.surfel_attribute.add(graph, targets, settings, draws);

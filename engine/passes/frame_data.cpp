@@ -31,6 +31,16 @@ bool is_numeric(View view) {
     return view == View::kDepth || view == View::kVisibility || view == View::kOverlap;
 }
 
+std::uint32_t lighting_flags(const Lighting& lighting) {
+    std::uint32_t flags = 0;
+    if (lighting.specular > 0) flags |= kLightingHighlights;
+    if (lighting.highlight == HighlightModel::kPhong) flags |= kLightingPhong;
+    if (lighting.rim > 0) flags |= kLightingRim;
+    for (const Light& light : lighting.lights)
+        if (light.kind == LightKind::kPoint) flags |= kLightingLamps;
+    return flags;
+}
+
 bool is_deferred(const FrameSettings& settings) {
     return settings.shading == Shading::kDeferred && !is_numeric(settings.view) && settings.view != View::kNormals &&
            settings.view != View::kAccumulation;
@@ -82,7 +92,6 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting, 
     uniforms.shininess = static_cast<float>(lighting.shininess);
     uniforms.rim = static_cast<float>(lighting.rim);
     uniforms.rim_exponent = static_cast<float>(lighting.rim_exponent);
-    uniforms.phong = lighting.highlight == HighlightModel::kPhong ? 1 : 0;
     uniforms.sample_share = kSampleShare;
     uniforms.sample_radius = kSampleRadius;
     uniforms.background = glm::vec4(linear_light(background.colour), background.transparent ? 0 : 1);
@@ -99,16 +108,17 @@ void FrameData::update(const FrameSettings& settings, const Lighting& lighting, 
 
 FrameVariant frame_variant(const FrameSettings& settings) {
     return {static_cast<std::uint32_t>(settings.view), settings.camera.orthographic ? 1u : 0u, is_deferred(settings),
-            settings.kernel};
+            settings.lighting, settings.kernel};
 }
 
 std::map<std::uint32_t, std::uint32_t> frame_constants(const FrameSettings& settings) {
     const FrameVariant variant = frame_variant(settings);
     const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
     const Kernel& kernel = variant.kernel;
-    return {{1, variant.view},         {2, variant.orthographic}, {5, static_cast<std::uint32_t>(kernel.shape)},
-            {6, bits(kernel.support)}, {7, bits(kernel.moment)},  {8, bits(kernel.a)},
-            {9, bits(kernel.n)}};
+    return {{1, variant.view},          {2, variant.orthographic},
+            {6, variant.lighting},      {20, static_cast<std::uint32_t>(kernel.shape)},
+            {21, bits(kernel.support)}, {22, bits(kernel.moment)},
+            {23, bits(kernel.a)},       {24, bits(kernel.n)}};
 }
 
 InstanceConstants instance_constants(const InstanceDraws& draws, double epsilon_scale) {

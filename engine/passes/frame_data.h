@@ -28,7 +28,11 @@ struct FrameSettings {
     bool prefilter = true;
     Kernel kernel = {};
     Shading shading = Shading::kSurfel;
+    std::uint32_t lighting = 0;  // lighting_flags() of the lights that FrameData is updated with
 };
+
+/// What these lights need, LightingFlags: pipelines are specialised for it.
+std::uint32_t lighting_flags(const Lighting& lighting);
 
 /// Whether normals and albedos are blended and lit afterwards: only where the view shows light.
 bool is_deferred(const FrameSettings& settings);
@@ -58,11 +62,12 @@ class FrameData {
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// What pipelines are specialised for: the constants 1 and 2 of frame.glsl, 5 to 9 of splat.glsl, and the attachments.
+/// What pipelines are specialised for: the constants of frame.glsl and splat.glsl, and the attachments.
 struct FrameVariant {
     std::uint32_t view;
     std::uint32_t orthographic;
     bool deferred;
+    std::uint32_t lighting;
     Kernel kernel;
     auto operator<=>(const FrameVariant&) const = default;
 };

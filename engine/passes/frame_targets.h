@@ -14,6 +14,7 @@ struct FrameTargets {
     graph::ImageHandle depth;            // reversed; stencil 1 where surfels own the pixel
     graph::ImageHandle accumulation;     // (w rgb, w); deferred: albedos
     graph::ImageHandle normals;          // deferred: (w n, w z), view space, z as the depth buffer encodes it
+    graph::ImageHandle splat_depth;      // compute: bits of depths in the depth buffer's encoding, the nearest splats'
     graph::ImageHandle picture;
 };
 

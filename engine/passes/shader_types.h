@@ -25,9 +25,8 @@ struct FrameUniforms {
     float rim;
     float rim_exponent;
     glm::vec4 background;
-    std::uint32_t phong;
     std::uint32_t samples_per_side;
-    float padding[2];  // std140 rounds the block up to 16 bytes
+    float padding[3];  // std140 rounds the block up to 16 bytes
 };
 static_assert(sizeof(FrameUniforms) == 160 && offsetof(FrameUniforms, ambient) == 96);
 
@@ -37,10 +36,20 @@ struct LightRecord {
 };
 static_assert(sizeof(LightRecord) == 32);
 
+/// Constant 6 of frame.glsl.
+enum LightingFlags : std::uint32_t {
+    kLightingHighlights = 1u << 0,
+    kLightingPhong = 1u << 1,
+    kLightingRim = 1u << 2,
+    kLightingLamps = 1u << 3,
+};
+
 enum InstanceFlags : std::uint32_t {
     kInstanceTwoSided = 1u << 0,
     kInstanceFirstSegment = 1u << 1,
     kInstanceLastSegment = 1u << 2,
+    kInstanceTiled = 1u << 3,
+    kInstanceListed = 1u << 4,
 };
 
 struct InstanceConstants {
@@ -63,7 +72,8 @@ struct TileUniforms {
     std::uint32_t words;
     std::uint32_t segmented;
     std::uint32_t first_solid;
-    std::uint32_t padding[2];
+    std::uint32_t first_listed;
+    std::uint32_t padding[1];
     glm::vec4 background;
 };
 static_assert(sizeof(TileUniforms) == 48);

@@ -29,17 +29,22 @@ void SurfelAttributePass::add(graph::Graph& graph, FrameTargets& targets, const 
     });
 }
 
-gpu::GraphicsPipelineOptions SurfelAttributePass::pipeline_options(bool deferred) const {
+gpu::GraphicsPipelineOptions attribute_state(bool deferred) {
     gpu::GraphicsPipelineOptions options;
-    options.name = "surfel_attribute";
-    options.vertex = {deferred ? &deferred_vertex_ : &vertex_, {}};
-    options.fragment = {deferred ? &deferred_fragment_ : &fragment_, {}};
     options.depth_test = true;
     options.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
     options.stencil_test = true;
     options.stencil_front = owned_by(kSurfelStencil);
     options.stencil_back = options.stencil_front;
     options.blends.assign(deferred ? 2 : 1, gpu::Blend::additive());
+    return options;
+}
+
+gpu::GraphicsPipelineOptions SurfelAttributePass::pipeline_options(bool deferred) const {
+    gpu::GraphicsPipelineOptions options = attribute_state(deferred);
+    options.name = "surfel_attribute";
+    options.vertex = {deferred ? &deferred_vertex_ : &vertex_, {}};
+    options.fragment = {deferred ? &deferred_fragment_ : &fragment_, {}};
     return options;
 }
 

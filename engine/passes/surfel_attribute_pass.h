@@ -7,6 +7,9 @@
 
 namespace splice {
 
+/// Tests and state of every pass that blends attributes.
+gpu::GraphicsPipelineOptions attribute_state(bool deferred);
+
 class SurfelAttributePass {
   public:
     SurfelAttributePass(gpu::Device& device, const FrameData& data);

@@ -12,6 +12,8 @@ namespace {
 constexpr VkShaderStageFlags kConstantStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 constexpr std::uint32_t kQuadVertices = 4;
 
+}  // namespace
+
 void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads) {
     options.vertex_bindings = {
         {0, sizeof(format::Surfel), quads ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX}};
@@ -28,8 +30,6 @@ void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads) {
     options.topology = quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
     options.vertex.constants[0] = quads ? 1u : 0u;
 }
-
-}  // namespace
 
 SurfelPrimitives::SurfelPrimitives(gpu::Device& device, const FrameData& data)
     : device_(device),

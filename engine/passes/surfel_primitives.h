@@ -12,6 +12,9 @@
 
 namespace splice {
 
+/// Vertex input, topology and constant 0 of surfel_vertex.glsl.
+void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads);
+
 class SurfelPrimitives {
   public:
     SurfelPrimitives(gpu::Device& device, const FrameData& data);

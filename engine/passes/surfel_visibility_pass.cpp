@@ -19,15 +19,11 @@ void SurfelVisibilityPass::add(graph::Graph& graph, FrameTargets& targets, const
     });
 }
 
-gpu::GraphicsPipelineOptions SurfelVisibilityPass::pipeline_options() const {
+gpu::GraphicsPipelineOptions visibility_state() {
     gpu::GraphicsPipelineOptions options;
-    options.name = "surfel_visibility";
-    options.vertex = {&vertex_, {}};
-    options.fragment = {&fragment_, {}};
     options.depth_test = true;
     options.depth_write = true;
     options.depth_compare = VK_COMPARE_OP_GREATER;
-    // Whoever is nearest owns the pixel; of equal depths, the triangle that was there first.
     options.stencil_test = true;
     options.stencil_front = {.failOp = VK_STENCIL_OP_KEEP,
                              .passOp = VK_STENCIL_OP_REPLACE,
@@ -37,6 +33,14 @@ gpu::GraphicsPipelineOptions SurfelVisibilityPass::pipeline_options() const {
                              .writeMask = 0xff,
                              .reference = kSurfelStencil};
     options.stencil_back = options.stencil_front;
+    return options;
+}
+
+gpu::GraphicsPipelineOptions SurfelVisibilityPass::pipeline_options() const {
+    gpu::GraphicsPipelineOptions options = visibility_state();
+    options.name = "surfel_visibility";
+    options.vertex = {&vertex_, {}};
+    options.fragment = {&fragment_, {}};
     return options;
 }
 

@@ -7,6 +7,10 @@
 
 namespace splice {
 
+/// Tests and state of every pass that decides what is visible: whoever is nearest owns the pixel; of equal depths, the
+/// triangle that was there first.
+gpu::GraphicsPipelineOptions visibility_state();
+
 class SurfelVisibilityPass {
   public:
     SurfelVisibilityPass(gpu::Device& device, const FrameData& data);

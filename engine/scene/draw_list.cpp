@@ -204,14 +204,18 @@ class Culler {
             return;
         }
         if (!draws_.two_sided && faces_away(patch)) return;
-        const bool sprite = !options_.force_quads && extent.containment == Containment::kInside &&
-                            largest_splat(patch, extent.nearest) <= options_.max_point_size;
-        append(sprite ? draws_.sprites : draws_.quads, {patch.first_surfel, patch.surfel_count, 0, index}, true);
+        const double largest = largest_splat(patch, extent.nearest);
+        const bool sprite =
+            !options_.force_quads && extent.containment == Containment::kInside && largest <= options_.max_point_size;
+        auto& ranges = largest <= options_.small_px ? draws_.small : sprite ? draws_.sprites : draws_.quads;
+        append(ranges, {patch.first_surfel, patch.surfel_count, 0, index}, true);
     }
 
     // Upper bound of the size in pixels of the point that encloses any splat of a patch inside the frustum: for |a|,
-    // |b| <= r, (x + a) / (d + b) - x / d is at most r (1 + |x / d|) / (d - r).
+    // |b| <= r, (x + a) / (d + b) - x / d is at most r (1 + |x / d|) / (d - r). `nearest` is a depth of the bounds,
+    // which hold the disks.
     double largest_splat(const format::Patch& patch, double nearest) const {
+        if (nearest <= camera_.near_plane) return std::numeric_limits<double>::infinity();
         const double radius = kSolidReach * patch.max_surfel_radius * draws_.scale;
         const double stretch = camera_.orthographic ? 1 : (1 + std::max(half_x_, half_y_)) / nearest;
         return 2 * (scale_ * radius * stretch + kPrefilterReach);
@@ -263,7 +267,7 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
         Culler(camera, width, height, options, draws).visit_all();
         for (const DrawRange& range : draws.triangles)
             list.triangles += range.count / 3;
-        for (const auto* ranges : {&draws.sprites, &draws.quads})
+        for (const auto* ranges : {&draws.sprites, &draws.quads, &draws.small})
             for (const DrawRange& range : *ranges)
                 list.surfels += range.count;
         list.cut += draws.cut.statistics;

@@ -37,6 +37,7 @@ struct InstanceDraws {
     std::vector<DrawRange> triangles;
     std::vector<DrawRange> sprites;  // surfels that fit a point: small, and wholly inside the frustum
     std::vector<DrawRange> quads;    // the others
+    std::vector<DrawRange> small;    // instead of either: those of DrawListOptions::small_px
     LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; gather_cuts makes ranges of it
 };
 
@@ -63,6 +64,7 @@ struct DrawListOptions {
     bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
     double max_point_size = 255;       // pixels, of the device
+    double small_px = 0;               // patches whose splats are all at most this wide go to InstanceDraws::small
     double tau = 0;                    // pixels, of the cut (lod_cut.h); 0: full detail
     DrawCosts costs = kSoftwareCosts;  // with tau: surfel patches are drawn by their triangles where those cost less
 };

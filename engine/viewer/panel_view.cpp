@@ -94,6 +94,10 @@ void draw_view_section(PanelContext& context) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("How far surfels may lie behind one another and still blend");
     ImGui::Checkbox("Prefilter", &look.prefilter);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("EWA's screen-space low-pass filter");
+    int samples = static_cast<int>(look.antialias);
+    if (ImGui::SliderInt("Antialias", &samples, 1, static_cast<int>(kMostSamplesPerSide), "%d per side"))
+        look.antialias = static_cast<std::uint32_t>(std::clamp(samples, 1, static_cast<int>(kMostSamplesPerSide)));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Samples along each side of a pixel; one while the camera moves");
     ImGui::Checkbox("Coarser while moving", &state.reduce_while_moving);
     if (!state.scene) return;
     Background& background = state.scene->loaded.scene.background;

@@ -298,6 +298,8 @@ void Viewer::draw_pictures() {
         CaptureSettings settings = look;
         settings.width = shared(viewport.width, share);
         settings.height = shared(viewport.height, share);
+        if (reduced) settings.antialias = 1;
+        pictures_whole_ = pictures_whole_ && share == 1 && settings.antialias == look.antialias;
         Pane& pane = graphics_->panes[i];
         const bool drawn = pane.update(graphics_->device, *graphics_->renderer, state_.scene->loaded.scene,
                                        state_.scene_revision, settings);
@@ -311,7 +313,6 @@ void Viewer::draw_pictures() {
     }
     state_.device_bytes = graphics_->device.memory().statistics().allocated_bytes;
     state_.device_name = graphics_->device.info().name;
-    pictures_whole_ = share == 1;
 }
 
 std::vector<ShownPicture> Viewer::shown_pictures() const {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -136,6 +137,12 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
         {"sides", [&] { look.sides = named(kSidesNames, value, "set sides"); }},
         {"epsilon", [&] { look.epsilon_scale = number(0, 100); }},
         {"prefilter", [&] { look.prefilter = on_or_off("set prefilter", value); }},
+        {"antialias",
+         [&] {
+             const double samples = number(1, kMostSamplesPerSide);
+             if (samples != std::floor(samples)) throw UsageError("set antialias: expected a whole number");
+             look.antialias = static_cast<std::uint32_t>(samples);
+         }},
         {"edited", [&] { state_.edited_look = value == "right" && pictures() == 2 ? 1 : 0; }},
         {"wipe", [&] { state_.wipe = number(0, 1); }},
         {"coarser", [&] { state_.reduce_while_moving = on_or_off("set coarser", value); }},

@@ -20,8 +20,9 @@
 #include "splat.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
-#include "tile_record.glsl"
+#include "splat_record.glsl"
 #include "compose.glsl"
+#include "splat_targets.glsl"
 
 layout(local_size_x = 8) in;
 
@@ -31,18 +32,16 @@ const uint PART_ALL = 0;
 const uint PART_VISIBILITY = 1;
 const uint PART_ATTRIBUTES = 2;
 
+// Whether other backends draw splats of the same frame: visibility begins with what they found visible, and when it
+// comes to attributes, the frame's depth is that of all.
+layout(constant_id = 4) const bool MIXED = false;
+
 // Whether tiles become the picture; else sums, for the normalise pass.
 layout(constant_id = 3) const bool COMPOSE = false;
 
 layout(set = 2, binding = 4) uniform usamplerBuffer record_texels;
 layout(set = 2, binding = 6) uniform usamplerBuffer block_texels;
 layout(set = 2, binding = 7) uniform usamplerBuffer mask_texels;
-layout(set = 2, binding = 8) uniform sampler2D triangle_depth;
-layout(set = 2, binding = 9, rgba32f) uniform image2D accumulation;
-layout(set = 2, binding = 10, r32f) uniform image2D segment_depth;
-layout(set = 2, binding = 11) uniform sampler2D triangle_colour;
-layout(set = 2, binding = 12, rgba8) uniform writeonly image2D picture;
-
 const uint MOST_GROUPS = max(FUSED_GROUPS, 32 * SEGMENT_WORDS);
 // Blocks that touch the tile: those of flat splats from the front, the others from the back.
 shared uint touching[MOST_GROUPS * BLOCKS];
@@ -218,6 +217,7 @@ struct Tile {
     float triangles[TILE.y];   // depth buffer values
     float visible[TILE.y];
     vec4 sum[TILE.y];
+    vec4 normal_sum[TILE.y];  // deferred: as FrameTargets::normals
     bool owned[TILE.y];
     float farthest;  // of what surfels own; beyond 1: nothing
 };
@@ -330,6 +330,9 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
     const float farthest_z = ORTHOGRAPHIC ? place.z - rise : place.z / (1 + rise);
     const float my_weight = VIEW == VIEW_OVERLAP ? 1 : filtered.weight;
     const vec3 my_colour = paint.colour * my_weight;
+    const vec3 my_albedo =
+        DEFERRED ? unpack_albedo(texelFetch(record_texels, int(tiles.first_solid + 2 * splat_place) + 1)) * my_weight
+                 : vec3(0);
     const float bend = speck ? 0 : my_weight;
     // Colours change along the disk, e times as fast.
     const vec3 bend_u = paint.colour_u * bend, bend_v = paint.colour_v * bend;
@@ -353,6 +356,7 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
             float slope = by_row.x + column * by_row.y + by_row.z;
             const float weight = subgroupShuffle(my_weight, i);
             const vec3 colour = subgroupShuffle(my_colour, i);
+            const vec3 albedo = DEFERRED ? subgroupShuffle(my_albedo, i) : vec3(0);
             vec3 bent = subgroupShuffle(my_bend, i) + column * subgroupShuffle(bend_column, i);
             const vec3 bent_step = subgroupShuffle(bend_row, i);
             PixelPlane at = at_column(plane, column);
@@ -393,7 +397,10 @@ void paint_block(uint block, const bool solids, inout Tile tile) {
                     tile.sum[row].a += reached ? 1 : 0;
                 } else {
                     const float part = reached ? (meeting.beside_disk ? BESIDE_WEIGHT : falloff(exponent)) : 0;
-                    if (VIEW == VIEW_DEPTH) {
+                    if (DEFERRED) {
+                        tile.sum[row].rgb += part * albedo;
+                        tile.normal_sum[row] += part * vec4(colour + bent * scale, weight * z);
+                    } else if (VIEW == VIEW_DEPTH) {
                         tile.sum[row].rgb += part * weight * decode_depth(max(z, 1e-30));
                     } else {
                         tile.sum[row].rgb += part * larger(colour + bent * scale, vec3(0));
@@ -459,12 +466,16 @@ void main() {
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {
         // Beyond the picture's edge any depth will do: what is stored there is dropped.
         const ivec2 pixel = min(first + ivec2(0, row), ivec2(frame.viewport) - 1);
-        tile.triangles[row] = texelFetch(triangle_depth, pixel, 0).r;
+        tile.triangles[row] = texelFetch(scene_depth, pixel, 0).r;
         tile.visible[row] = tile.triangles[row];
         tile.sum[row] = vec4(0);
+        tile.normal_sum[row] = vec4(0);
         if (PART != PART_ALL) {
-            if (PART == PART_ATTRIBUTES || !starts) tile.visible[row] = imageLoad(segment_depth, pixel).r;
+            if (MIXED ? PART == PART_VISIBILITY : PART == PART_ATTRIBUTES || !starts)
+                tile.visible[row] = max(tile.visible[row], uintBitsToFloat(imageLoad(splat_depth, pixel).r));
             if (PART == PART_ATTRIBUTES && !starts) tile.sum[row] = imageLoad(accumulation, pixel);
+            if (DEFERRED && PART == PART_ATTRIBUTES && !starts) tile.normal_sum[row] = imageLoad(normals, pixel);
+            if (MIXED && PART == PART_ATTRIBUTES) tile.triangles[row] = -1;  // who owns a pixel the stencil says
         }
         const vec2 off = (vec2(pixel) + 0.5 - frame.viewport * 0.5) / frame.pixel_scale;
         tile.along_axis[row] = ORTHOGRAPHIC ? 1 : inversesqrt(1 + dot(off, off));
@@ -486,9 +497,10 @@ void main() {
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {
         const ivec2 pixel = first + ivec2(0, row);
         if (PART == PART_VISIBILITY) {
-            imageStore(segment_depth, pixel, vec4(tile.visible[row]));
+            imageStore(splat_depth, pixel, uvec4(floatBitsToUint(tile.visible[row])));
         } else if (PART == PART_ATTRIBUTES || !COMPOSE) {
             imageStore(accumulation, pixel, tile.owned[row] ? tile.sum[row] : vec4(0));
+            if (DEFERRED) imageStore(normals, pixel, tile.normal_sum[row]);
         }
         if (COMPOSE && PART != PART_VISIBILITY) {
             const vec4 triangles = texelFetch(triangle_colour, min(pixel, ivec2(frame.viewport) - 1), 0);

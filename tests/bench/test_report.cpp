@@ -2,7 +2,7 @@
 #include "engine/bench/graph/report_html.h"
 #include "engine/bench/graph/report_json.h"
 #include "engine/bench/graph/report_text.h"
-#include "engine/bench/graph/svg.h"
+#include "engine/bench/report/svg.h"
 #include "preprocess/model_format/error.h"
 #include "tests/bench/markup_checker.h"
 

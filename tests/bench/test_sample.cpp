@@ -1,4 +1,4 @@
-#include "engine/bench/graph/sample.h"
+#include "engine/bench/report/sample.h"
 
 #include <catch2/catch.hpp>
 

@@ -58,12 +58,13 @@ metrics::ColourImage colours_of(const Frame& frame) {
 }
 
 // Pixels that `full` covers and `cut` does not, but for those at the outline: specks, which show at the pixel that
-// holds their centre, grow that by up to half a pixel, and ellipses that stand for many of them do not.
+// holds their centre, grow that by up to half a pixel, and ellipses that stand for many of them do not; and disks
+// overhang it, triangles that take their place do not.
 std::size_t holes(const Frame& full, const Frame& cut) {
     metrics::Mask covered(full.width, full.height);
     for (std::size_t i = 0; i < full.coverage.size(); ++i)
         covered.pixels[i] = full.coverage[i] != 0;
-    const metrics::Mask inside = metrics::eroded(covered, 1);
+    const metrics::Mask inside = metrics::eroded(covered, 2);
     std::size_t count = 0;
     for (std::size_t i = 0; i < full.coverage.size(); ++i)
         count += inside.pixels[i] != 0 && cut.coverage[i] == 0;

@@ -1,7 +1,7 @@
 // The structures that C++ and GLSL share are declared twice; here the compiled shaders are reflected and compared with
 // the C++ side, member by member.
 #include "engine/passes/shader_types.h"
-#include "engine/passes/tile_buffers.h"
+#include "engine/passes/splat_buffers.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
 #include "preprocess/model_format/surfel_clip.h"
@@ -9,14 +9,21 @@
 #include "shaders/deferred_attribute_frag.h"
 #include "shaders/deferred_attribute_vert.h"
 #include "shaders/deferred_shade_frag.h"
+#include "shaders/list_fill_comp.h"
+#include "shaders/list_scan_comp.h"
+#include "shaders/point_sums_comp.h"
+#include "shaders/points_comp.h"
+#include "shaders/raster_attribute_vert.h"
+#include "shaders/raster_deferred_vert.h"
+#include "shaders/raster_visibility_vert.h"
 #include "shaders/resolve_frag.h"
+#include "shaders/splat_setup_comp.h"
 #include "shaders/surfel_attribute_frag.h"
 #include "shaders/surfel_attribute_vert.h"
 #include "shaders/surfel_normalise_frag.h"
 #include "shaders/surfel_visibility_frag.h"
 #include "shaders/surfel_visibility_vert.h"
 #include "shaders/tile_gather_comp.h"
-#include "shaders/tile_setup_comp.h"
 #include "shaders/triangle_frag.h"
 #include "shaders/triangle_vert.h"
 #include "tests/support/test_files.h"
@@ -109,7 +116,14 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"deferred_attribute.vert", deferred_attribute_vert},
             {"deferred_attribute.frag", deferred_attribute_frag},
             {"deferred_shade.frag", deferred_shade_frag},
-            {"tile_setup.comp", tile_setup_comp},
+            {"splat_setup.comp", splat_setup_comp},
+            {"list_scan.comp", list_scan_comp},
+            {"list_fill.comp", list_fill_comp},
+            {"points.comp", points_comp},
+            {"point_sums.comp", point_sums_comp},
+            {"raster_visibility.vert", raster_visibility_vert},
+            {"raster_attribute.vert", raster_attribute_vert},
+            {"raster_deferred.vert", raster_deferred_vert},
             {"tile_gather.comp", tile_gather_comp},
             {"triangle.vert", triangle_vert},
             {"triangle.frag", triangle_frag}};
@@ -143,7 +157,7 @@ TEST_CASE("frame uniforms have the layout that the shaders declare") {
           MEMBER(FrameUniforms, sample_share), MEMBER(FrameUniforms, sample_radius), MEMBER(FrameUniforms, ambient),
           MEMBER(FrameUniforms, light_count), MEMBER(FrameUniforms, specular), MEMBER(FrameUniforms, shininess),
           MEMBER(FrameUniforms, rim), MEMBER(FrameUniforms, rim_exponent), MEMBER(FrameUniforms, background),
-          MEMBER(FrameUniforms, phong), MEMBER(FrameUniforms, samples_per_side)}});
+          MEMBER(FrameUniforms, samples_per_side)}});
 }
 
 TEST_CASE("light records have the layout that the shaders declare") {
@@ -166,11 +180,11 @@ TEST_CASE("tile uniforms have the layout that the shaders declare") {
                       {sizeof(TileUniforms),
                        {MEMBER(TileUniforms, cells_x), MEMBER(TileUniforms, cells_y), MEMBER(TileUniforms, cell_shift),
                         MEMBER(TileUniforms, words), MEMBER(TileUniforms, segmented), MEMBER(TileUniforms, first_solid),
-                        MEMBER(TileUniforms, background)}},
+                        MEMBER(TileUniforms, first_listed), MEMBER(TileUniforms, background)}},
                       2);
 }
 
-TEST_CASE("surfels have the layout that tile_setup.comp reads as texels") {
+TEST_CASE("surfels have the layout that splat_setup.comp reads as texels") {
     using format::Surfel;
     // In words: the radius with the extent, the colour with the first bend.
     const std::vector<unsigned> words{MEMBER(Surfel, position),         MEMBER(Surfel, position) + 4,
@@ -190,6 +204,10 @@ TEST_CASE("the cells of tiles have the layout that the shaders declare") {
                       {kTileCellList, {kTileFusedDispatch, kTileSegmentedDispatch, kTileCellList}}, 2, 5);
 }
 
+TEST_CASE("the list of splats has the layout that the shaders declare") {
+    expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, false, {kListGroups, {kListDraw, kListGroups}}, 2, 8);
+}
+
 TEST_CASE("constants that C++ and GLSL share have the same values") {
     const auto constant = [](const std::string& file, const std::string& name, int component = 0) {
         std::ifstream stream(test::source_file("shaders/glsl/" + file));
@@ -205,6 +223,10 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
+    CHECK(constant("include/frame.glsl", "LIGHTING_HIGHLIGHTS") == +kLightingHighlights);
+    CHECK(constant("include/frame.glsl", "LIGHTING_PHONG") == +kLightingPhong);
+    CHECK(constant("include/frame.glsl", "LIGHTING_RIM") == +kLightingRim);
+    CHECK(constant("include/frame.glsl", "LIGHTING_LAMPS") == +kLightingLamps);
     CHECK(constant("include/tile.glsl", "TILE") == kTileWidth);
     CHECK(constant("include/tile.glsl", "TILE", 1) == kTileHeight);
     CHECK(constant("include/tile.glsl", "GROUP") == kTileGroup);

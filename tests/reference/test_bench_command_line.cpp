@@ -74,6 +74,12 @@ TEST_CASE("splice-bench answers a wrong command line with one line and exit code
                                   "graph --no-device --families frame",
                                   "graph --device nonsense",
                                   "graph extra",
+                                  "frame no-such-model.splice",
+                                  "frame --backend beige",
+                                  "frame --size 12",
+                                  "frame --count 0",
+                                  "frame --rounds 0",
+                                  "frame --points-below 65",
                                   "quality no-such-mesh.obj",
                                   "quality bumpy-sphere x",
                                   "quality bumpy-sphere 0",
@@ -118,6 +124,32 @@ TEST_CASE("splice-bench measures a bake and writes what it printed as JSON") {
     REQUIRE(report.size() == 1);
     CHECK(report[0]["runs"].size() == 2);
     CHECK(report[0]["runs"][0]["output"]["triangles"] == 2);
+}
+
+TEST_CASE("splice-bench frame runs variants, and says what moved since it wrote a report") {
+    const test::TemporaryFolder folder;
+    const std::string report = (folder / "report.json").string(), page = (folder / "page.html").string();
+    const Outcome outcome =
+        bench("frame --count 2000 --size 96x64,32x32 --shading surfel,deferred --rounds 2 --json '" + report +
+              "' --html '" + page + "'");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto json = nlohmann::json::parse(contents(report));
+    // Two sizes, two shadings of five backends, and the baseline.
+    REQUIRE(json["frames"].size() == 2 * (2 * 5 + 1));
+    for (const auto& frame : json["frames"]) {
+        CHECK(frame["surfels"] == 2000);
+        CHECK(frame["fragments"].get<int>() > 0);
+        CHECK(frame["covered_pixels"].get<int>() > 0);
+        CHECK(frame["frame_ms"]["minimum"].get<double>() > 0);
+        CHECK(frame["passes"].empty() == (frame["backend"] == "bare"));
+    }
+    CHECK(contents(page).find("<svg") != std::string::npos);
+    const Outcome again = bench(
+        "frame --count 2000 --size 32x32 --backend tile,point --points-below 20 --rounds 1 --vs '" + report + "'");
+    CHECK(again.exit_code == 0);
+    CHECK(again.out.find("figures moved") != std::string::npos);
+    CHECK(again.out.find("bare") == std::string::npos);
 }
 
 TEST_CASE("splice-bench quality measures meshes and scenes, and leaves pictures") {

@@ -260,7 +260,8 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
                "screenshot turned.png\nscreenshot-window window.png\ncamera-line turned.txt\n"
                "key 5\nset epsilon 0.8\nset background \"#203040\"\nview depth\nwait\n"
                "screenshot depth.png\ncamera-line depth.txt\n"
-               "view shaded\nset show triangles\nkey control+3\nwait\nscreenshot side.png\ncamera-line side.txt\n"
+               "view shaded\nset antialias 2\nwait\nscreenshot smooth.png\ncamera-line smooth.txt\nset antialias 1\n"
+               "set show triangles\nkey control+3\nwait\nscreenshot side.png\ncamera-line side.txt\n"
                "compare wipe\nset wipe 0.25\nwait\nscreenshot-window wipe.png\n"
                "compare side-by-side\nwait\nscreenshot-window both.png\ncompare off\n"
                "bookmark here\nkey 1\ngo here\nwait\nscreenshot again.png\nsave-scene saved.json\n"
@@ -271,7 +272,7 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
         {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700", "--script", "tour.txt"});
     REQUIRE(viewer.wait() == 0);
     CHECK(viewer.err() == "");
-    for (const char* name : {"turned", "depth", "side"}) {
+    for (const char* name : {"turned", "depth", "smooth", "side"}) {
         INFO(name);
         const Picture shot = read_png(folder / (std::string(name) + ".png"));
         CHECK(shot.width == 1000 - kPanel);

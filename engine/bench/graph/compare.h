@@ -11,9 +11,7 @@ namespace splice::bench {
 /// A report that `splice-bench graph --json` wrote. Throws InputError for anything else.
 nlohmann::json read_report(const std::filesystem::path& path);
 
-/// A table of every time whose quartiles lie apart and whose median and minimum differ by more than 5 %, and of every
-/// count that differs, the largest ratios first; then how many figures stayed where they were and what only one of the
-/// two has. Throws InputError naming `old_name` where `before` lacks a field.
+/// See change_report() of report/changes.h. Throws InputError naming `old_name` where `before` lacks a field.
 std::string compare_reports(const nlohmann::json& before, const nlohmann::json& now, const std::string& old_name);
 
 }  // namespace splice::bench

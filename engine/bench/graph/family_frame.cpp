@@ -23,7 +23,7 @@ void declare_view(graph::Graph& graph, FramePasses& passes, const FrameSettings&
     const graph::BufferHandle pixels = graph.import_buffer("pixels", {kTexelBytes * settings.width * settings.height},
                                                            {.after = graph::external::host_read()});
     graph::Bindings kept;  // sprites keep nothing from frame to frame
-    const graph::ImageHandle picture = add_frame(graph, kept, passes, Backend::kSprite, settings, background, draws);
+    const graph::ImageHandle picture = add_frame(graph, kept, passes, {}, settings, background, draws);
     add_read_back(graph, picture, pixels, settings.width, settings.height);
 }
 

@@ -1,6 +1,6 @@
 #include "engine/bench/graph/figures.h"
 #include "engine/bench/graph/report_text.h"
-#include "engine/bench/graph/svg.h"
+#include "engine/bench/report/svg.h"
 
 #include <fmt/format.h>
 

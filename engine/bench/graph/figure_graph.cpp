@@ -1,6 +1,6 @@
 #include "engine/bench/graph/figures.h"
 #include "engine/bench/graph/graph_layout.h"
-#include "engine/bench/graph/svg.h"
+#include "engine/bench/report/svg.h"
 
 #include <fmt/format.h>
 

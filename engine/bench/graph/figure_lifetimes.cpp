@@ -1,5 +1,5 @@
 #include "engine/bench/graph/figures.h"
-#include "engine/bench/graph/svg.h"
+#include "engine/bench/report/svg.h"
 
 #include <fmt/format.h>
 

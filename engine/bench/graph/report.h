@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/bench/graph/memory_model.h"
-#include "engine/bench/graph/sample.h"
+#include "engine/bench/report/sample.h"
 #include "engine/render_graph/plan_statistics.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 #include "engine/bench/graph/report_html.h"
 
 #include "engine/bench/graph/figures.h"
-#include "engine/bench/graph/report_style.h"
 #include "engine/bench/graph/report_text.h"
-#include "engine/bench/graph/svg.h"
+#include "engine/bench/report/html_parts.h"
+#include "engine/bench/report/svg.h"
 
 #include <fmt/format.h>
 
@@ -13,18 +13,6 @@
 
 namespace splice::bench {
 namespace {
-
-std::string figure(std::string_view title, std::string_view caption, const std::string& drawing) {
-    return fmt::format(
-        "<figure>\n<h2>{}</h2>\n<p class=\"caption\">{}</p>\n<div class=\"drawing\">\n{}</div>\n</figure>\n",
-        escape_markup(title), escape_markup(caption), drawing);
-}
-
-/// One figure that matters, and what it should be.
-std::string tile(const std::string& value, std::string_view meaning, std::string_view goal, bool reached) {
-    return fmt::format("<div class=\"tile {}\"><b>{}</b><span>{}</span><small>{}</small></div>\n",
-                       reached ? "good" : "short", escape_markup(value), escape_markup(meaning), escape_markup(goal));
-}
 
 constexpr uint32_t kGoalPasses = 1024;
 
@@ -70,20 +58,6 @@ std::string tiles_of(const GraphReport& report) {
     return "<div class=\"tiles\">\n" + tiles + "</div>\n";
 }
 
-std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
-    std::string text = "<div class=\"drawing\"><table>\n<tr>";
-    for (const std::string& cell : header)
-        text += "<th>" + escape_markup(cell) + "</th>";
-    text += "</tr>\n";
-    for (const auto& row : rows) {
-        text += "<tr>";
-        for (const std::string& cell : row)
-            text += "<td>" + escape_markup(cell) + "</td>";
-        text += "</tr>\n";
-    }
-    return text + "</table></div>\n";
-}
-
 std::string device_section(const GraphReport& report) {
     if (report.on_device.empty()) return "";
     std::vector<std::vector<std::string>> rows;
@@ -100,9 +74,9 @@ std::string device_section(const GraphReport& report) {
     }
     return "<section>\n<h2>On the device</h2>\n<p class=\"caption\">" + escape_markup(report.device) +
            "; all variants in turn, one frame each a round. A frame is recorded, submitted and waited for.</p>\n" +
-           table({"graph", "switches", "ms, least", "median", "record us", "render passes", "barriers / commands",
-                  "transient MB", "image"},
-                 rows) +
+           html_table({"graph", "switches", "ms, least", "median", "record us", "render passes", "barriers / commands",
+                       "transient MB", "image"},
+                      rows) +
            "</section>\n";
 }
 
@@ -119,9 +93,9 @@ std::string record_section(const GraphReport& report) {
     }
     return "<section>\n<h2>Recording, through the graph and by hand</h2>\n<p class=\"caption\">A deferred view of 32 "
            "passes; by hand everything is filled in beforehand. Microseconds, median.</p>\n" +
-           table({"draws a geometry pass", "commands", "by hand", "graph kept", "overhead", "declared anew", "overhead",
-                  "commands", "image"},
-                 rows) +
+           html_table({"draws a geometry pass", "commands", "by hand", "graph kept", "overhead", "declared anew",
+                       "overhead", "commands", "image"},
+                      rows) +
            "</section>\n";
 }
 
@@ -136,7 +110,7 @@ std::string record_growth_section(const GraphReport& report) {
     }
     return "<section>\n<h2>Recording against size</h2>\n<p class=\"caption\">Passes that record nothing of their own: "
            "what the graph adds. A hit finds the plan of a graph declared anew.</p>\n" +
-           table({"graph", "render passes", "barriers", "us", "ns a pass", "hit, us"}, rows) + "</section>\n";
+           html_table({"graph", "render passes", "barriers", "us", "ns a pass", "hit, us"}, rows) + "</section>\n";
 }
 
 std::string example_sections(const GraphReport& report) {
@@ -156,29 +130,25 @@ std::string example_sections(const GraphReport& report) {
 }  // namespace
 
 std::string report_html(const GraphReport& report) {
-    std::string page =
-        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta "
-        "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>Render graph "
-        "benchmark</title>\n<style>\n" +
-        std::string(kReportStyle) + "</style>\n</head>\n<body>\n<main>\n<h1>Render graph benchmark</h1>\n";
-    page +=
-        fmt::format("<p class=\"caption\">{}; {}; medians of {} rounds; seed {}</p>\n", escape_markup(report.processor),
-                    report.device.empty() ? "no device" : escape_markup(report.device), report.repeat, report.seed);
-    page += tiles_of(report);
-    page += figure("Compile time a pass",
+    const std::string caption =
+        fmt::format("{}; {}; medians of {} rounds; seed {}", report.processor,
+                    report.device.empty() ? "no device" : report.device, report.repeat, report.seed);
+    std::string body;
+    body += tiles_of(report);
+    body += figure("Compile time a pass",
                    "All phases, image sizes log-uniform. Level is linear; the exponent is of the total from 64 to "
                    "4,096 passes.",
                    draw_growth(report));
     const uint32_t passes = typical_results(report).front()->passes;
-    page += figure(fmt::format("Where the time goes, {} passes", passes), "Nanoseconds a pass.", draw_phases(report));
-    page += figure(fmt::format("Barriers, {} passes", passes),
+    body += figure(fmt::format("Where the time goes, {} passes", passes), "Nanoseconds a pass.", draw_phases(report));
+    body += figure(fmt::format("Barriers, {} passes", passes),
                    "One an access: what a recorder needs that looks at one access at a time.", draw_barriers(report));
-    page += figure("Aliased memory over the lower bound",
+    body += figure("Aliased memory over the lower bound",
                    "The lower bound is the most that is alive at once. The worst of the seeds; dashed: the goal, 1.10.",
                    draw_memory(report));
-    page += example_sections(report);
-    page += device_section(report) + record_growth_section(report) + record_section(report);
-    return page + "</main>\n</body>\n</html>\n";
+    body += example_sections(report);
+    body += device_section(report) + record_growth_section(report) + record_section(report);
+    return page("Render graph benchmark", caption, body);
 }
 
 }  // namespace splice::bench

@@ -1,15 +1,10 @@
 #include "engine/bench/graph/report_json.h"
 
+#include "engine/bench/report/changes.h"
+
 namespace splice::bench {
 namespace {
 using nlohmann::json;
-
-json sample(const Sample& one) {
-    return {{"median", one.median},
-            {"minimum", one.minimum},
-            {"lower_quartile", one.lower_quartile},
-            {"upper_quartile", one.upper_quartile}};
-}
 
 template <typename T, typename Function>
 json list(const std::vector<T>& elements, const Function& function) {
@@ -33,11 +28,11 @@ json compiled(const CompileResult& result) {
             {"barriers", plan.barriers},
             {"barrier_commands", plan.barrier_commands},
             {"barriers_one_per_access", plan.barriers_one_per_access},
-            {"declare_ns", sample(result.declare_ns)},
-            {"compile_ns", sample(result.compile_ns)},
-            {"cache_hit_ns", sample(result.cache_hit_ns)},
+            {"declare_ns", json_of(result.declare_ns)},
+            {"compile_ns", json_of(result.compile_ns)},
+            {"cache_hit_ns", json_of(result.cache_hit_ns)},
             {"phases", list(result.phases, [](const PhaseTime& phase) {
-                 return json{{"name", phase.name}, {"ns", sample(phase.ns)}};
+                 return json{{"name", phase.name}, {"ns", json_of(phase.ns)}};
              })}};
 }
 
@@ -57,8 +52,8 @@ json memory(const MemoryResult& result) {
 
 json variant(const VariantResult& result) {
     return {{"name", result.name},
-            {"frame_ms", sample(result.frame_ms)},
-            {"record_us", sample(result.record_us)},
+            {"frame_ms", json_of(result.frame_ms)},
+            {"record_us", json_of(result.record_us)},
             {"render_passes", result.render_passes},
             {"barrier_commands", result.barrier_commands},
             {"barriers", result.barriers},
@@ -79,9 +74,9 @@ json recorded(const RecordResult& result) {
     return {{"passes", result.passes},
             {"objects", result.objects},
             {"commands", result.commands},
-            {"by_hand_us", sample(result.by_hand_us)},
-            {"through_graph_us", sample(result.through_graph_us)},
-            {"declared_anew_us", sample(result.declared_anew_us)},
+            {"by_hand_us", json_of(result.by_hand_us)},
+            {"through_graph_us", json_of(result.through_graph_us)},
+            {"declared_anew_us", json_of(result.declared_anew_us)},
             {"overhead", result.overhead},
             {"overhead_declared_anew", result.overhead_declared_anew},
             {"same_commands", result.same_commands},
@@ -93,8 +88,8 @@ json record_growth(const RecordGrowthResult& result) {
             {"passes", result.passes},
             {"render_passes", result.render_passes},
             {"barriers", result.barriers},
-            {"record_us", sample(result.record_us)},
-            {"hit_us", sample(result.hit_us)}};
+            {"record_us", json_of(result.record_us)},
+            {"hit_us", json_of(result.hit_us)}};
 }
 
 }  // namespace

@@ -6,6 +6,12 @@
 // What never changes within a frame and is worth a pipeline of its own: no fragment branches on it.
 layout(constant_id = 1) const uint VIEW = 0;  // VIEW_*
 layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
+// What the scene's lights need; a software device would compute what they do not, and mask it.
+layout(constant_id = 6) const uint LIGHTING = 0;  // LIGHTING_*
+const uint LIGHTING_HIGHLIGHTS = 1;
+const uint LIGHTING_PHONG = 2;  // highlights by Phong's mirrored light, not Blinn's half vector
+const uint LIGHTING_RIM = 4;
+const uint LIGHTING_LAMPS = 8;  // point lights
 
 // engine/scene/view.h
 const uint VIEW_SHADED = 0;
@@ -36,7 +42,6 @@ layout(set = 0, binding = 0, std140) uniform FrameUniforms {
     float rim;
     float rim_exponent;
     vec4 background;       // linear; alpha 0: transparent
-    uint phong;            // 0 or 1: highlights by Blinn's half vector or Phong's mirrored light
     uint samples_per_side; // of a pixel of the picture; all else counts samples as pixels
 } frame;
 
@@ -51,6 +56,8 @@ layout(set = 0, binding = 1, std430) readonly buffer LightRecords {
 const uint INSTANCE_TWO_SIDED = 1;
 const uint INSTANCE_FIRST_SEGMENT = 2;  // compute: nothing was gathered yet
 const uint INSTANCE_LAST_SEGMENT = 4;
+const uint INSTANCE_TILED = 8;    // setup: splats go to the tiles that they touch
+const uint INSTANCE_LISTED = 16;  // setup: and to the list of those that are rasterised
 
 layout(push_constant, std430) uniform InstanceConstants {
     vec4 model_to_view[3];  // rows of the affine map from unit-box to view space: uniform scale, rotation, translation
@@ -59,7 +66,7 @@ layout(push_constant, std430) uniform InstanceConstants {
     uint flags;             // INSTANCE_*
     uint first_patch;       // added to patch numbers, so that instances get different colours
     uint first_surfel;      // compute: of the bound surfels
-    uint surfel_count;
+    uint surfel_count;      // of passes over what setup made of them: how many groups
     uint first_group;       // compute: number of the first of their groups
     uint first_word;        // compute: where in the cells' masks a segment begins
 } instance;
@@ -75,7 +82,6 @@ struct FrameCopy {
     vec3 ambient;
     uint light_count;
     float specular, shininess, rim, rim_exponent;
-    uint phong;
 } frame_copy;
 struct InstanceCopy {
     vec4 model_to_view[3];
@@ -86,7 +92,7 @@ struct InstanceCopy {
 void copy_uniforms() {
     frame_copy = FrameCopy(frame.viewport, frame.pixel_scale, frame.near_plane, frame.far_plane, frame.prefilter,
                            frame.sample_share, frame.sample_radius, frame.ambient, frame.light_count, frame.specular,
-                           frame.shininess, frame.rim, frame.rim_exponent, frame.phong);
+                           frame.shininess, frame.rim, frame.rim_exponent);
     instance_copy = InstanceCopy(instance.model_to_view, instance.scale, instance.epsilon_scale, instance.flags,
                                  instance.first_patch, instance.first_surfel, instance.surfel_count,
                                  instance.first_group);

@@ -10,15 +10,18 @@ struct Light {
 };
 
 Light light_at(LightRecord light, vec3 normal, vec3 position) {
-    const vec3 offset = light.vector.xyz - position * light.vector.w;
-    const vec3 to_light = normalize(offset);
-    const vec3 strength = light.colour.rgb / (1 + light.colour.a * dot(offset, offset));
+    vec3 to_light = light.vector.xyz, strength = light.colour.rgb;
+    if ((LIGHTING & LIGHTING_LAMPS) != 0) {
+        const vec3 offset = light.vector.xyz - position * light.vector.w;
+        to_light = normalize(offset);
+        strength /= 1 + light.colour.a * dot(offset, offset);
+    }
     const float cosine = dot(normal, to_light);
     if (cosine <= 0) return Light(vec3(0), vec3(0));
     vec3 highlight = vec3(0);
-    if (frame.specular > 0) {
+    if ((LIGHTING & LIGHTING_HIGHLIGHTS) != 0) {
         const vec3 to_eye = normalize(towards_eye(position));
-        const float lobe = frame.phong != 0 ? dot(reflect(-to_light, normal), to_eye)
+        const float lobe = (LIGHTING & LIGHTING_PHONG) != 0 ? dot(reflect(-to_light, normal), to_eye)
                                             : dot(normal, normalize(to_light + to_eye));
         highlight = strength * pow(max(lobe, 0), frame.shininess);
     }
@@ -27,7 +30,7 @@ Light light_at(LightRecord light, vec3 normal, vec3 position) {
 
 // What a surface seen at a grazing angle adds, whatever the lights.
 float rim_light(vec3 normal, vec3 position) {
-    if (frame.rim == 0) return 0;
+    if ((LIGHTING & LIGHTING_RIM) == 0) return 0;
     const float facing = clamp(dot(normal, normalize(towards_eye(position))), 0, 1);
     return frame.rim * pow(1 - facing, frame.rim_exponent);
 }

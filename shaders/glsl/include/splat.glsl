@@ -61,11 +61,11 @@ const float PREFILTER_REACH = 2;  // pixels by which a splat or a speck's pixel 
 const float NOWHERE = 1e18;
 
 // engine/scene/kernel.h. The default is a Gaussian of variance 1/2, cut at the rim.
-layout(constant_id = 5) const uint KERNEL = 0;
-layout(constant_id = 6) const float KERNEL_SUPPORT = 1;
-layout(constant_id = 7) const float KERNEL_MOMENT = 0.5;
-layout(constant_id = 8) const float KERNEL_A = 0;
-layout(constant_id = 9) const float KERNEL_N = 0;
+layout(constant_id = 20) const uint KERNEL = 0;
+layout(constant_id = 21) const float KERNEL_SUPPORT = 1;
+layout(constant_id = 22) const float KERNEL_MOMENT = 0.5;
+layout(constant_id = 23) const float KERNEL_A = 0;
+layout(constant_id = 24) const float KERNEL_N = 0;
 const uint KERNEL_DISK = 0;
 const uint KERNEL_GAUSSIAN = 1;
 const uint KERNEL_CONFETTI = 2;

@@ -1,7 +1,9 @@
-// What the passes of the tile backend hand to each other. The screen is cut into cells, and those into tiles of TILE
+// What compute passes over splats hand to each other. The screen is cut into cells, and those into tiles of TILE
 // pixels. Setup records the splats of GROUP surfels at a time, without gaps, in blocks of BLOCK, and sets the group's
 // bit in the mask of every cell that one of its blocks touches; gathering walks the bits of its tile's cell, picks the
 // blocks that touch the tile, and of those the splats.
+//
+// Of groups that are not for tiles, block bounds say which blocks have splats; the list has them in order.
 //
 // Bits have no order to get wrong and every group has its own place, so the result is the same whatever the device does
 // first. There is no list that could be too short. Some drivers (llvmpipe) end every loop of an invocation once all its
@@ -26,6 +28,7 @@ layout(set = 2, binding = 0, std140) uniform TileUniforms {
     uint words;       // of a cell's mask, 32 groups each
     uint segmented;   // 1: no cell is gathered at once
     uint first_solid;  // texel of the records
+    uint first_listed; // texel of the list
     vec4 background;  // what the picture holds where nothing is
 }
 tiles;
@@ -39,6 +42,13 @@ layout(set = 2, binding = 5, std430) buffer TileCells {
                    // each), and from the end those in segments
 };
 
+// Splats to be rasterised, in the order of their surfels.
+layout(set = 2, binding = 8, std430) buffer SplatList {
+    uvec4 draw;    // vertices, instances, the first of each
+    uint first[];  // of each group: how many it has, then where they begin; behind that, at tiles.first_listed - 4, places
+}
+list;
+
 uint cell_count() {
     return tiles.cells_x * tiles.cells_y;
 }
@@ -46,5 +56,8 @@ uint cell_count() {
 // Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, for all
 // blocks of a group that has a solid.
 const uint BLOCK_SOLID = 0x8000;
+
+// Whether a block has a splat.
+bool block_reaches(uvec2 bounds) { return (bounds.x & 0x7fff) < bounds.x >> 16; }
 
 #endif

@@ -1,4 +1,4 @@
-// Tile backend: every surfel of a range becomes the record of its splat, once a frame. Most surfels of a frame are
+// Every surfel of a range becomes the record of its splat, once a frame. Most surfels of a frame are
 // cheap to reject: a workgroup, which is one subgroup, first finds which of its group are not, then works on those with
 // all of its invocations.
 #version 460
@@ -15,9 +15,11 @@
 #include "splat.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
-#include "tile_record.glsl"
+#include "splat_record.glsl"
 
 layout(local_size_x = 8) in;
+
+layout(constant_id = 5) const bool DEFERRED = false;  // records have normals and albedos instead of lit colours
 
 layout(set = 1, binding = 0) uniform usamplerBuffer surfels;  // format::Surfel: two texels each
 layout(set = 2, binding = 1, rgba32ui) uniform writeonly uimageBuffer records;
@@ -89,7 +91,13 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
         if (drawn && all(lessThan(own.low, own.high))) {
             bounds = own;
             reaches = pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth));
-            const SurfelColour colour = surfel_colour(record, surfel);
+            SurfelColour colour;
+            if (DEFERRED) {
+                const SurfelNormals normals = surfel_normals(record, surfel);
+                colour = SurfelColour(normals.centre, normals.along_u, normals.along_v);
+            } else {
+                colour = surfel_colour(record, surfel);
+            }
             const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
             const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
             const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
@@ -108,10 +116,15 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             imageStore(records, texel + 3,
                        uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
                              packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
-            if (marks != 0) {
-                const int solid_texel = int(first_solid + 2 * place);
+            const int solid_texel = int(first_solid + 2 * place);
+            if (marks != 0)
                 imageStore(records, solid_texel,
                            uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
+            if (DEFERRED) {
+                const vec3 albedo = surfel_albedo(record);
+                imageStore(records, solid_texel + 1,
+                           uvec4(record.clip, packHalf2x16(albedo.rg), packHalf2x16(vec2(albedo.b, 0)), 0));
+            } else if (marks != 0) {
                 imageStore(records, solid_texel + 1, uvec4(record.clip, 0, 0, 0));
             }
         }
@@ -154,6 +167,7 @@ void main() {
     subgroupBarrier();
 
     PixelBounds group_bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
+    uint shown = 0;
     uvec2 own_block = uvec2(0);  // of the block with the number of this invocation
     bool solid = false;
     if (kept != 0) {
@@ -163,6 +177,7 @@ void main() {
             PixelBounds bounds =
                 record_surfel(i < kept, instance.first_surfel + remaining[min(i, kept - 1)], group * GROUP + i);
             solid = solid || subgroupBallot(bounds.solid).x != 0;
+            shown += subgroupBallotBitCount(subgroupBallot(bounds.low.x < bounds.high.x));
             bounds = united(bounds);
             group_bounds.low = min(group_bounds.low, bounds.low);
             group_bounds.high = max(group_bounds.high, bounds.high);
@@ -172,8 +187,9 @@ void main() {
         } while (block * BLOCK < kept);
     }
     imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block.x | (solid ? BLOCK_SOLID : 0), own_block.y, 0, 0));
+    if ((instance.flags & INSTANCE_LISTED) != 0 && lane == 0) list.first[group] = shown;
 
-    if (group_bounds.low.x >= group_bounds.high.x) return;
+    if ((instance.flags & INSTANCE_TILED) == 0 || group_bounds.low.x >= group_bounds.high.x) return;
     const uvec2 first_cell = group_bounds.low >> tiles.cell_shift;
     const uvec2 touched = ((group_bounds.high - 1) >> tiles.cell_shift) + 1 - first_cell;
     uint i = lane;

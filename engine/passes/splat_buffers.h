@@ -1,4 +1,4 @@
-// What the passes of the tile backend hand to each other (shaders/glsl/include/tile.glsl), kept from frame to frame and
+// What the compute passes over splats hand to each other (shaders/glsl/include/tile.glsl), kept from frame to frame and
 // grown when a frame needs more.
 #pragma once
 
@@ -21,24 +21,33 @@ inline constexpr std::uint32_t kTileSegmentWords = 24, kTileFusedGroups = 416;
 inline constexpr std::uint32_t kTileCellsGroup = 64;
 
 /// The buffers of one frame as its graph knows them.
-struct TileHandles {
-    graph::BufferHandle records, blocks, masks, cells;
+struct SplatHandles {
+    graph::BufferHandle records, blocks, masks, cells, list;
 };
 
-class TileBuffers {
+/// What one batch of a frame needs room for, in groups of surfels.
+struct SplatRoom {
+    std::uint64_t groups = 0;  // all
+    std::uint64_t tiled = 0, listed = 0;
+};
+
+class SplatBuffers {
   public:
-    explicit TileBuffers(gpu::Device& device);
+    explicit SplatBuffers(gpu::Device& device);
 
     /// Groups that one batch may have: what texel buffers hold, and at most `most` where that is not 0.
     std::uint64_t most_groups(std::uint64_t most) const;
-    /// Makes room for batches of `groups`; no submitted work may still use the frame before.
-    void prepare(const FrameSettings& settings, std::uint64_t groups, bool segmented, const VkClearValue& background);
-    TileHandles import(graph::Graph& graph, graph::Bindings& bindings) const;
-    /// Bindings 1 to 7 of tile.glsl and the uniforms.
-    void write(gpu::DescriptorWriter& writer) const;
+    /// `segmented`: tiles are gathered in segments, whatever their number. No submitted work may still use the frame
+    /// before.
+    void prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented, const VkClearValue& background);
+    SplatHandles import(graph::Graph& graph, graph::Bindings& bindings) const;
     /// Empties masks and cells.
-    void clear(VkCommandBuffer commands) const;
+    void clear_tiles(VkCommandBuffer commands) const;
 
+    /// Set 2 of tile.glsl.
+    const gpu::DescriptorSetLayout& layout() const { return layout_; }
+    VkDescriptorSet set() const { return set_; }
+    const gpu::Buffer& list() const { return list_; }
     const TileUniforms& uniforms() const { return values_; }
     std::uint32_t cells() const { return values_.cells_x * values_.cells_y; }
 
@@ -46,12 +55,17 @@ class TileBuffers {
     bool grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage);
 
     gpu::Device& device_;
-    gpu::Buffer uniforms_, records_, blocks_, masks_, cells_;
-    gpu::UniqueBufferView record_view_, block_view_, mask_view_;
+    gpu::DescriptorSetLayout layout_;
+    gpu::DescriptorPool pool_;
+    gpu::Buffer uniforms_, records_, blocks_, masks_, cells_, list_;
+    gpu::UniqueBufferView record_view_, block_view_, mask_view_, list_view_;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
     TileUniforms values_{};
 };
 
 /// Offsets in bytes into the cell buffer.
 inline constexpr std::uint64_t kTileFusedDispatch = 0, kTileSegmentedDispatch = 16, kTileCellList = 32;
+/// And into the list: a VkDrawIndirectCommand, then a number a group.
+inline constexpr std::uint64_t kListDraw = 0, kListGroups = 16;
 
 }  // namespace splice

@@ -1,4 +1,4 @@
-#include "engine/bench/graph/svg.h"
+#include "engine/bench/report/svg.h"
 
 #include <fmt/format.h>
 

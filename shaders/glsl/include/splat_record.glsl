@@ -1,14 +1,14 @@
-// A splat as the tile backend records it: what splat.glsl computes of it, in the units of the depth buffer. Flat
-// splats, those of disks and not of solids, have the first four, a line of a
-// cache; those of solids and cut disks lie behind them all. Needs frame.glsl, splat.glsl,
+// A splat as setup records it, for every backend but the sprites: what splat.glsl computes of it, in the units of the
+// depth buffer. Flat splats, those of disks and not of solids, have the first four, a line of a cache; those of solids
+// and cut disks lie behind them all. Needs frame.glsl, splat.glsl,
 // surfel_frame.glsl, tile.glsl.
 //   0  anchor, reach around it (halves), z
 //   1  plane_map
 //   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
-//   3  colour, its change along u, its change along v but for blue (halves)
-//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it
-#ifndef SPLICE_TILE_RECORD_GLSL
-#define SPLICE_TILE_RECORD_GLSL
+//   3  colour, its change along u, its change along v but for blue (halves); deferred: the normal instead, its xyz for rgb
+//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it; deferred: albedo (halves), of flat ones, too
+#ifndef SPLICE_SPLAT_RECORD_GLSL
+#define SPLICE_SPLAT_RECORD_GLSL
 
 // Marks: how far the solid reaches above and below, as format::Surfel stores it (5 bits each), and
 const uint MARKS = 0x1fff;
@@ -29,6 +29,9 @@ struct SplatPlace {
 SplatPlace unpack_place(uvec4 texel) {
     return SplatPlace(uintBitsToFloat(texel.xy), unpackHalf2x16(texel.z), uintBitsToFloat(texel.w));
 }
+
+// Of a record that holds a splat.
+bool place_reaches(SplatPlace place) { return place.reach.x > -1e3; }
 
 // `reach` is rounded up.
 uvec4 pack_place(vec2 anchor, vec2 reach, float z) {
@@ -82,12 +85,16 @@ SplatPaint unpack_paint(SplatPlane splat, uvec4 texel) {
     return paint;
 }
 
+// Of deferred shading.
+vec3 unpack_albedo(uvec4 texel) { return vec3(unpackHalf2x16(texel.y), unpackHalf2x16(texel.z).x); }
+
 struct SplatFilter {
     vec3 conic;
     float weight;
 };
 
-// What make_splat computes, from the inverse A of its J: V = J J^T / 2 + p I (1/2 the kernel's moment), J J^T = S^-1 with S = A^T A, and with
+// What make_splat computes, from the inverse A of its J: V = J J^T / 2 + p I (1/2 or another kernel's moment),
+// J J^T = S^-1 with S = A^T A, and with
 // Q = |S| |V| both V^-1 = (S / 2 + p |S| I) / Q and |J| / (2 sqrt|V|) = 1 / (2 sqrt Q) need no division by |S|.
 SplatFilter filter_of(SplatPlane splat) {
     if (frame.prefilter == 0 && KERNEL_SUPPORT <= 1) return SplatFilter(vec3(NOWHERE, 0, NOWHERE), 1);

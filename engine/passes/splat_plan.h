@@ -1,0 +1,49 @@
+// Which technique draws which surfels, and how a frame's surfels are cut into batches that fit the buffers.
+#pragma once
+
+#include "engine/scene/backend.h"
+#include "engine/scene/draw_list.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace splice {
+
+/// How compute passes get splats to the accumulation; see Backend.
+enum class Technique : std::uint32_t { kTile, kRaster, kPoint };
+inline constexpr std::size_t kTechniques = 3;
+
+Backend backend_of(Technique technique);
+
+/// By list of the draws: the small splats, and the others.
+struct Techniques {
+    Technique small = Technique::kTile, others = Technique::kTile;
+};
+
+/// Consecutive surfels of one chunk of a model, and their first group in the batch.
+struct SplatJob {
+    const InstanceDraws* instance;
+    VkDescriptorSet surfels;
+    std::uint32_t first_surfel, count, first_group;
+    Technique technique;
+};
+
+struct GroupRange {
+    std::uint32_t first = 0, count = 0;
+};
+
+/// Groups of a technique are consecutive; those of tiles come first.
+struct SplatBatch {
+    std::vector<SplatJob> jobs;
+    std::array<GroupRange, kTechniques> ranges{};
+    std::uint64_t groups = 0;
+    const GroupRange& range(Technique technique) const { return ranges[static_cast<std::size_t>(technique)]; }
+};
+
+/// At least one batch, of at most `most_groups` groups each. `draws` must outlive the result.
+std::vector<SplatBatch> plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups);
+
+}  // namespace splice

@@ -1,0 +1,136 @@
+#include "engine/passes/splat_programs.h"
+
+#include "engine/scene/gpu_model.h"
+#include "shaders/list_fill_comp.h"
+#include "shaders/list_scan_comp.h"
+#include "shaders/point_sums_comp.h"
+#include "shaders/points_comp.h"
+#include "shaders/splat_setup_comp.h"
+#include "shaders/tile_cells_comp.h"
+#include "shaders/tile_gather_comp.h"
+
+#include <algorithm>
+#include <array>
+
+namespace splice {
+
+namespace {
+
+constexpr VkShaderStageFlags kCompute = VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr std::uint64_t kWidestDispatch = 65535;  // workgroups, of every device
+
+}  // namespace
+
+SplatPrograms::SplatPrograms(gpu::Device& device, const FrameData& data, const SplatBuffers& buffers)
+    : device_(device),
+      data_(data),
+      buffers_(buffers),
+      surfel_layout_(surfel_set_layout(device)),
+      target_layout_(device, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
+                              {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
+                              {2, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                              {3, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                              {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                              {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
+                              {6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute}}),
+      layout_(device,
+              std::array{data.layout().handle(), surfel_layout_.handle(), buffers.layout().handle(),
+                         target_layout_.handle()},
+              sizeof(InstanceConstants), kCompute),
+      setup_(device, splat_setup_comp, "splat_setup.comp"),
+      cells_(device, tile_cells_comp, "tile_cells.comp"),
+      gather_(device, tile_gather_comp, "tile_gather.comp"),
+      list_scan_(device, list_scan_comp, "list_scan.comp"),
+      list_fill_(device, list_fill_comp, "list_fill.comp"),
+      points_(device, points_comp, "points.comp"),
+      point_sums_(device, point_sums_comp, "point_sums.comp"),
+      sampler_(gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST,
+                                            .mipmap_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                            .address_mode = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE})),
+      pool_(device) {}
+
+void SplatPrograms::bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings,
+                         const Variant& variant) {
+    struct Program {
+        const gpu::ShaderModule& shader;
+        const char* name;
+        std::uint32_t part = 0;  // constant 0
+    };
+    const Program program = [&]() -> Program {
+        switch (stage) {
+            case Stage::kSetup:
+                return {setup_, "splat_setup"};
+            case Stage::kTileCells:
+                return {cells_, "tile_cells"};
+            case Stage::kTileGather:
+                return {gather_, "tile_gather", 0};
+            case Stage::kTileVisibility:
+                return {gather_, "tile_visibility", 1};
+            case Stage::kTileAttributes:
+                return {gather_, "tile_attributes", 2};
+            case Stage::kListScan:
+                return {list_scan_, "list_scan"};
+            case Stage::kListFill:
+                return {list_fill_, "list_fill"};
+            case Stage::kPointVisibility:
+                return {points_, "point_visibility", 0};
+            case Stage::kPointAttributes:
+                return {points_, "point_attributes", 1};
+            default:
+                return {point_sums_, "point_sums", variant.adds ? 1u : 0u};
+        }
+    }();
+    gpu::ComputePipeline& pipeline = pipelines_[{frame_variant(settings), stage, variant}];
+    if (!pipeline) {
+        std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
+        constants[0] = program.part;
+        constants[3] = variant.composes ? 1u : 0u;
+        constants[4] = variant.mixed ? 1u : 0u;
+        constants[5] = is_deferred(settings) ? 1u : 0u;
+        pipeline = gpu::ComputePipeline(device_, {&program.shader, constants}, layout_.handle(), program.name);
+    }
+    vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
+    const VkDescriptorSet frame_set = data_.set(), splats = buffers_.set();
+    vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 0, 1, &frame_set, 0,
+                            nullptr);
+    vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 2, 1, &splats, 0,
+                            nullptr);
+    if (stage == Stage::kSetup || stage == Stage::kTileCells || stage == Stage::kListScan || stage == Stage::kListFill)
+        return;
+    const VkDescriptorSet target = target_set(context);
+    vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 3, 1, &target, 0,
+                            nullptr);
+}
+
+void SplatPrograms::push(VkCommandBuffer commands, const InstanceConstants& constants) const {
+    vkCmdPushConstants(commands, layout_.handle(), kCompute, 0, sizeof constants, &constants);
+}
+
+void SplatPrograms::bind_surfels(VkCommandBuffer commands, VkDescriptorSet surfels) const {
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 1, 1, &surfels, 0, nullptr);
+}
+
+void SplatPrograms::dispatch_groups(VkCommandBuffer commands, std::uint64_t groups) {
+    vkCmdDispatch(commands, static_cast<std::uint32_t>(std::min(groups, kWidestDispatch)),
+                  static_cast<std::uint32_t>((groups + kWidestDispatch - 1) / kWidestDispatch), 1);
+}
+
+VkDescriptorSet SplatPrograms::target_set(const graph::PassContext& context) {
+    if (sets_.plan_id == context.plan_id && sets_.set != VK_NULL_HANDLE) return sets_.set;
+    pool_.reset();  // one frame is in flight, and it is this one
+    sets_ = {context.plan_id, pool_.allocate(target_layout_)};
+    const FrameTargets& frame = targets_.frame;
+    gpu::DescriptorWriter(sets_.set)
+        .sampled_image(0, context.depth_view(frame.depth), sampler_.get(),
+                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
+        .sampled_image(1, context.view(frame.triangle_colour), sampler_.get())
+        .storage_image(2, context.view(frame.splat_depth))
+        .storage_image(3, context.view(frame.accumulation))
+        .storage_image(4, context.view(targets_.deferred ? frame.normals : frame.accumulation))
+        .storage_image(5, context.view(targets_.composes ? frame.picture : frame.accumulation))
+        .storage_buffer(6, targets_.points ? context.buffer(targets_.point_sums) : buffers_.list().handle())
+        .write(device_);
+    return sets_.set;
+}
+
+}  // namespace splice

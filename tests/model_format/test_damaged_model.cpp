@@ -100,7 +100,7 @@ TEST_CASE("every flipped bit is noticed") {
 TEST_CASE("a forged checksum does not get a bent header through") {
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.magic[6] = '\n'; }), Contains("byte 0: not a model file"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.version = kVersion - 1; }),
-               Contains("byte 8: format version 1"));
+               Contains("byte 8: format version 2"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.section_count = 0xffffffffu; }), Contains("byte 12"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.section_count = 0; }), Contains("byte 12"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.file_bytes = ~0ull; }), Contains("byte 16"));

@@ -123,6 +123,7 @@ std::optional<SurfelOwnership> SplatPasses::add(graph::Graph& graph, graph::Bind
     const bool composed = !mixed && composes(settings);
     programs_.set_targets({.frame = targets,
                            .point_sums = point_sums_,
+                           .tiles = !mixed || uses(Technique::kTile),
                            .composes = composed,
                            .deferred = is_deferred(settings),
                            .points = points});
@@ -208,11 +209,10 @@ void SplatPasses::add_setup(graph::Graph& graph, const FrameSettings& settings, 
         graph::Pass pass = graph.add_pass("splat_setup", graph::PassKind::compute);
         handles_.records = pass.storage_write(handles_.records, graph::Contents::discard());
         handles_.blocks = pass.storage_write(handles_.blocks, graph::Contents::discard());
-        if (tiled) {
-            handles_.masks = pass.storage_read_write(handles_.masks);
-            handles_.cells = pass.storage_read_write(handles_.cells);
-        }
-        if (listed) handles_.list = pass.storage_write(handles_.list, graph::Contents::discard());
+        // One shader serves all techniques: what a batch does not use it could write all the same.
+        handles_.masks = pass.storage_read_write(handles_.masks);
+        handles_.cells = pass.storage_read_write(handles_.cells);
+        handles_.list = pass.storage_write(handles_.list, graph::Contents::discard());
         pass.record([this, &settings, &batch](const graph::PassContext& context) { set_up(context, settings, batch); });
     }
     if (tiled) {
@@ -276,10 +276,11 @@ void SplatPasses::add_segments(graph::Graph& graph, FrameTargets& targets, const
                                std::vector<Stage> stages, Place place, const Variant& variant) {
     graph::Pass pass = graph.add_pass("tile_segments", graph::PassKind::compute);
     read_inputs(pass, targets);
-    const bool sees = stages.front() == Stage::kTileVisibility, paints = stages.back() == Stage::kTileAttributes;
+    const bool sees = stages.front() == Stage::kTileVisibility;
     if (variant.mixed) {
-        if (sees) targets.splat_depth = pass.storage_read_write(targets.splat_depth);
-        if (paints) write_sums(pass, targets, settings, place.first);
+        // One shader does both: it could write in either phase what it writes in the other.
+        targets.splat_depth = pass.storage_read_write(targets.splat_depth);
+        write_sums(pass, targets, settings, sees || place.first);
     } else {
         const bool fresh = place.first && buffers_.uniforms().segmented != 0 && sees;
         write_sums(pass, targets, settings, fresh);

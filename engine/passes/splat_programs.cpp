@@ -3,8 +3,9 @@
 #include "engine/scene/gpu_model.h"
 #include "shaders/list_fill_comp.h"
 #include "shaders/list_scan_comp.h"
+#include "shaders/point_attributes_comp.h"
 #include "shaders/point_sums_comp.h"
-#include "shaders/points_comp.h"
+#include "shaders/point_visibility_comp.h"
 #include "shaders/splat_setup_comp.h"
 #include "shaders/tile_cells_comp.h"
 #include "shaders/tile_gather_comp.h"
@@ -42,7 +43,8 @@ SplatPrograms::SplatPrograms(gpu::Device& device, const FrameData& data, const S
       gather_(device, tile_gather_comp, "tile_gather.comp"),
       list_scan_(device, list_scan_comp, "list_scan.comp"),
       list_fill_(device, list_fill_comp, "list_fill.comp"),
-      points_(device, points_comp, "points.comp"),
+      point_visibility_(device, point_visibility_comp, "point_visibility.comp"),
+      point_attributes_(device, point_attributes_comp, "point_attributes.comp"),
       point_sums_(device, point_sums_comp, "point_sums.comp"),
       sampler_(gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST,
                                             .mipmap_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
@@ -73,9 +75,9 @@ void SplatPrograms::bind(const graph::PassContext& context, Stage stage, const F
             case Stage::kListFill:
                 return {list_fill_, "list_fill"};
             case Stage::kPointVisibility:
-                return {points_, "point_visibility", 0};
+                return {point_visibility_, "point_visibility"};
             case Stage::kPointAttributes:
-                return {points_, "point_attributes", 1};
+                return {point_attributes_, "point_attributes"};
             default:
                 return {point_sums_, "point_sums", variant.adds ? 1u : 0u};
         }
@@ -120,10 +122,11 @@ VkDescriptorSet SplatPrograms::target_set(const graph::PassContext& context) {
     pool_.reset();  // one frame is in flight, and it is this one
     sets_ = {context.plan_id, pool_.allocate(target_layout_)};
     const FrameTargets& frame = targets_.frame;
+    constexpr VkImageLayout kDepthRead = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
     gpu::DescriptorWriter(sets_.set)
-        .sampled_image(0, context.depth_view(frame.depth), sampler_.get(),
-                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
-        .sampled_image(1, context.view(frame.triangle_colour), sampler_.get())
+        .sampled_image(0, context.depth_view(frame.depth), sampler_.get(), kDepthRead)
+        .sampled_image(1, targets_.tiles ? context.view(frame.triangle_colour) : context.depth_view(frame.depth),
+                       sampler_.get(), targets_.tiles ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : kDepthRead)
         .storage_image(2, context.view(frame.splat_depth))
         .storage_image(3, context.view(frame.accumulation))
         .storage_image(4, context.view(targets_.deferred ? frame.normals : frame.accumulation))

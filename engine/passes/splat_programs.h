@@ -41,7 +41,7 @@ class SplatPrograms {
     struct Targets {
         FrameTargets frame;
         graph::BufferHandle point_sums;
-        bool composes = false, deferred = false, points = false;
+        bool tiles = false, composes = false, deferred = false, points = false;
     };
     void set_targets(const Targets& targets) { targets_ = targets; }
 
@@ -65,7 +65,8 @@ class SplatPrograms {
     const SplatBuffers& buffers_;
     gpu::DescriptorSetLayout surfel_layout_, target_layout_;
     gpu::PipelineLayout layout_;
-    gpu::ShaderModule setup_, cells_, gather_, list_scan_, list_fill_, points_, point_sums_;
+    gpu::ShaderModule setup_, cells_, gather_, list_scan_, list_fill_, point_visibility_, point_attributes_,
+        point_sums_;
     gpu::UniqueSampler sampler_;
     gpu::DescriptorPool pool_;
     Targets targets_;

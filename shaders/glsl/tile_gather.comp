@@ -480,10 +480,11 @@ void main() {
         const vec2 off = (vec2(pixel) + 0.5 - frame.viewport * 0.5) / frame.pixel_scale;
         tile.along_axis[row] = ORTHOGRAPHIC ? 1 : inversesqrt(1 + dot(off, off));
     }
+    const uint cell = (place >> 16) * tiles.cells_x + (place & 0xffff);
     const uint first_word = PART == PART_ALL ? 0 : instance.first_word;
-    const uint end_word = PART == PART_ALL ? tiles.words : min(first_word + SEGMENT_WORDS, tiles.words);
-    const Found found =
-        find_blocks((place >> 16) * tiles.cells_x + (place & 0xffff), first_word, end_word, tile.corner);
+    const uint last_word = PART == PART_ALL ? tiles.words : min(first_word + SEGMENT_WORDS, tiles.words);
+    const uint end_word = cells[cell] == 0 ? first_word : last_word;
+    const Found found = find_blocks(cell, first_word, end_word, tile.corner);
     if (PART != PART_ATTRIBUTES) {
         see(false, found.flat_blocks, tile);
         see(true, found.solid_blocks, tile);

@@ -49,7 +49,7 @@ TEST_CASE("goals of frames compare the rows that they are about") {
     CHECK(goals[2].reached == Approx(0.8));
     CHECK_FALSE(goals[2].met());
     CHECK_FALSE(goals_of(report_of(30))[0].met());
-    CHECK(goals_of({}).empty());
+    CHECK(bench::goals_of({}).empty());
 }
 
 TEST_CASE("the table of frames has rates by the median and the backends that drew") {
@@ -68,12 +68,12 @@ TEST_CASE("the page of frames is well-formed and has a drawing a scene") {
 
 TEST_CASE("a report of frames says what moved since an earlier one") {
     const nlohmann::json before = frame_report_json(report_of(20)), now = frame_report_json(report_of(30));
-    CHECK_THAT(compare_frame_reports(before, now, "old.json"),
+    CHECK_THAT(bench::compare_frame_reports(before, now, "old.json"),
                Contains("bumpy-sphere 50000, auto, surfel, 100x100: frame, ms") && Contains("slower"));
-    CHECK_THAT(compare_frame_reports(before, before, "old.json"), Contains("0 of "));
+    CHECK_THAT(bench::compare_frame_reports(before, before, "old.json"), Contains("0 of "));
     nlohmann::json broken = before;
     broken["frames"][0].erase("frame_ms");
-    CHECK_THROWS_AS(compare_frame_reports(broken, now, "old.json"), InputError);
+    CHECK_THROWS_AS(bench::compare_frame_reports(broken, now, "old.json"), InputError);
 }
 
 TEST_CASE("a report of another benchmark is refused") {

@@ -124,7 +124,7 @@ TEST_CASE("an edge in front of another surface mixes with that surface") {
     HandmadeModel model = with_edge_at(40.5f);
     model.add_surfels(sheet({-0.9f, -0.9f, -0.5f}, {1.8f, 0, 0}, {0, 1.8f, 0}, 40, kBlue));
     const Scene scene = unlit(renderer, model, true);
-    for (const Backend backend : {Backend::kSprite, Backend::kTile}) {
+    for (const Backend backend : {Backend::kSprite, Backend::kTile, Backend::kRaster, Backend::kPoint}) {
         CaptureSettings settings = straight_on(2);
         settings.backend = backend;
         const Frame frame = renderer.render(scene, settings);

@@ -11,8 +11,9 @@
 #include "shaders/deferred_shade_frag.h"
 #include "shaders/list_fill_comp.h"
 #include "shaders/list_scan_comp.h"
+#include "shaders/point_attributes_comp.h"
 #include "shaders/point_sums_comp.h"
-#include "shaders/points_comp.h"
+#include "shaders/point_visibility_comp.h"
 #include "shaders/raster_attribute_vert.h"
 #include "shaders/raster_deferred_vert.h"
 #include "shaders/raster_visibility_vert.h"
@@ -119,7 +120,8 @@ std::vector<std::pair<std::string, std::span<const std::uint32_t>>> shaders() {
             {"splat_setup.comp", splat_setup_comp},
             {"list_scan.comp", list_scan_comp},
             {"list_fill.comp", list_fill_comp},
-            {"points.comp", points_comp},
+            {"point_visibility.comp", point_visibility_comp},
+            {"point_attributes.comp", point_attributes_comp},
             {"point_sums.comp", point_sums_comp},
             {"raster_visibility.vert", raster_visibility_vert},
             {"raster_attribute.vert", raster_attribute_vert},
@@ -223,10 +225,10 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
-    CHECK(constant("include/frame.glsl", "LIGHTING_HIGHLIGHTS") == +kLightingHighlights);
-    CHECK(constant("include/frame.glsl", "LIGHTING_PHONG") == +kLightingPhong);
-    CHECK(constant("include/frame.glsl", "LIGHTING_RIM") == +kLightingRim);
-    CHECK(constant("include/frame.glsl", "LIGHTING_LAMPS") == +kLightingLamps);
+    CHECK(constant("include/frame.glsl", "LIGHTING_HIGHLIGHTS") == std::uint32_t{kLightingHighlights});
+    CHECK(constant("include/frame.glsl", "LIGHTING_PHONG") == std::uint32_t{kLightingPhong});
+    CHECK(constant("include/frame.glsl", "LIGHTING_RIM") == std::uint32_t{kLightingRim});
+    CHECK(constant("include/frame.glsl", "LIGHTING_LAMPS") == std::uint32_t{kLightingLamps});
     CHECK(constant("include/tile.glsl", "TILE") == kTileWidth);
     CHECK(constant("include/tile.glsl", "TILE", 1) == kTileHeight);
     CHECK(constant("include/tile.glsl", "GROUP") == kTileGroup);

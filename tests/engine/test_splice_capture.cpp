@@ -116,8 +116,14 @@ TEST_CASE("software devices draw surfels tile by tile unless told otherwise") {
         return nlohmann::json::parse(read_text(folder / "a.json")).at("backend").get<std::string>();
     };
     CHECK(backend({}) == "tile");
-    CHECK(backend({"--view", "visibility"}) == "sprite");
-    CHECK(backend({"--backend", "sprite"}) == "sprite");
+    CHECK(backend({"--view", "visibility"}) == "raster");
+    CHECK(backend({"--view", "visibility", "--backend", "tile"}) == "sprite");
+    for (const char* named : {"sprite", "raster", "tile"})
+        CHECK(backend({"--backend", named}) == named);
+    CHECK(backend({"--points-below", "64", "--size", "32x32"}) == "point");
+    const auto stats = nlohmann::json::parse(read_text(folder / "a.json"));
+    CHECK(stats.at("drawn_by") == nlohmann::json{{"point", stats.at("surfels_drawn")}});
+    CHECK(capture(folder, {"a.splice", "-o", "a.png", "--points-below", "65"}).exit_code == 2);
 }
 
 TEST_CASE("the frame's render graph is written in the form that the file's extension names") {

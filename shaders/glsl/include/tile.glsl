@@ -13,11 +13,11 @@
 #ifndef SPLICE_TILE_GLSL
 #define SPLICE_TILE_GLSL
 
-// engine/passes/tile_buffers.h
+// engine/passes/splat_buffers.h
 const uvec2 TILE = uvec2(8, 4);  // pixels; a row is a vector of a CPU's device
 const uint GROUP = 64;           // surfels
 const uint BLOCK = 8;            // splats
-const uint RECORD_TEXELS = 4;    // tile_record.glsl; solids have one more
+const uint RECORD_TEXELS = 4;    // splat_record.glsl; solids have one more
 const uint SEGMENT_WORDS = 24;   // of a cell's mask
 const uint FUSED_GROUPS = 416;   // groups of a cell that is gathered at once
 const uint BLOCKS = GROUP / BLOCK;

@@ -143,6 +143,7 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
              if (samples != std::floor(samples)) throw UsageError("set antialias: expected a whole number");
              look.antialias = static_cast<std::uint32_t>(samples);
          }},
+        {"tau", [&] { look.tau = number(0, 1000); }},
         {"edited", [&] { state_.edited_look = value == "right" && pictures() == 2 ? 1 : 0; }},
         {"wipe", [&] { state_.wipe = number(0, 1); }},
         {"coarser", [&] { state_.reduce_while_moving = on_or_off("set coarser", value); }},

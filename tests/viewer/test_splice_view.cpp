@@ -1,5 +1,6 @@
 // splice-view in a real window on a display of the test's own, with real input events, on a software device.
 #include "engine/capture/png_file.h"
+#include "engine/scene/view.h"
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/mesh/write_mesh.h"
 #include "tests/cli/spawn.h"
@@ -183,7 +184,7 @@ TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, s
 
     SECTION("views") {
         std::vector<Picture> seen{scene};
-        for (int i = 1; i < 12; ++i) {
+        for (std::size_t i = 1; i < kViewNames.size(); ++i) {
             display->key("v");
             // A view's first picture may take long: its shaders are compiled.
             seen.push_back(scene_part(display->picture_when(
@@ -260,7 +261,8 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
                "screenshot turned.png\nscreenshot-window window.png\ncamera-line turned.txt\n"
                "key 5\nset epsilon 0.8\nset background \"#203040\"\nview depth\nwait\n"
                "screenshot depth.png\ncamera-line depth.txt\n"
-               "view shaded\nset antialias 2\nwait\nscreenshot smooth.png\ncamera-line smooth.txt\nset antialias 1\n"
+               "view shaded\nset antialias 2\nset tau 3\nwait\nscreenshot smooth.png\ncamera-line smooth.txt\n"
+               "set antialias 1\nset tau 0\n"
                "set show triangles\nkey control+3\nwait\nscreenshot side.png\ncamera-line side.txt\n"
                "compare wipe\nset wipe 0.25\nwait\nscreenshot-window wipe.png\n"
                "compare side-by-side\nwait\nscreenshot-window both.png\ncompare off\n"

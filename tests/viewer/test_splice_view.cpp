@@ -133,7 +133,7 @@ TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, s
     const test::TemporaryFolder folder;
     write_mesh_file(folder / "knot.ply");
     write_model_file(folder / "knot.ply", folder / "knot.splice");
-    write_mesh_file(folder / "dropped.ply", 40);
+    write_mesh_file(folder / "dropped.ply", 120);  // long enough to bake that the title can be seen to change
     RunningViewer viewer(folder.path(), display->name(),
                          {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700"});
     REQUIRE(display->find_window());

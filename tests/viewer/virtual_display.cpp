@@ -148,7 +148,7 @@ bool VirtualDisplay::wait_for_title(const std::string& wanted, double seconds) c
     const auto start = Clock::now();
     while (since(start) < seconds) {
         if (title() == wanted) return true;
-        sleep_seconds(0.05);
+        sleep_seconds(0.01);
     }
     return false;
 }

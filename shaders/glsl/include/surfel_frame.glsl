@@ -108,9 +108,6 @@ struct SurfelColour {
 const int LIT_POINTS = 5;
 const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0, 1), vec2(0, -1));
 
-// 1, or -1 where a two-sided surface is seen from behind.
-float side_of(SurfelFrame surfel) { return dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1; }
-
 vec3 surfel_albedo(SurfelRecord record) {
     const bool finest = VIEW == VIEW_LEVELS && !is_ellipse(record);
     return view_albedo(decode_srgb(record.colour), finest ? 0 : record.patch_number, true);
@@ -121,26 +118,39 @@ struct SurfelNormals {
     vec3 centre, along_u, along_v;
 };
 
+// The shading normal of the disk's side that its plane's normal is on, not unit. `uv`: on the disk, in radii.
+vec3 leaning_normal(SurfelRecord record, SurfelFrame surfel, vec2 uv) {
+    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
+    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
+    return surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t;
+}
+
+// 1, or -1 where a two-sided surface is seen from behind. Its end nearest the eye decides: of a disk right behind a
+// silhouette that is what shows, and it belongs to the surface before the silhouette if that bends so.
+float side_of(SurfelRecord record, SurfelFrame surfel) {
+    const vec3 to_eye = normalize(towards_eye(surfel.centre));
+    const vec3 normal = normalize(leaning_normal(record, surfel, vec2(dot(surfel.s, to_eye), dot(surfel.t, to_eye))));
+    return dot(face_the_eye(normal, surfel.centre), normal) < 0 ? -1 : 1;
+}
+
 SurfelNormals surfel_normals(SurfelRecord record, SurfelFrame surfel) {
     const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
     const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
     const vec3 centre = surfel.normal + lean.x * surfel.s + lean.y * surfel.t;
-    const float scale = side_of(surfel) * inversesqrt(dot(centre, centre));
+    const float scale = side_of(record, surfel) * inversesqrt(dot(centre, centre));
     return SurfelNormals(scale * centre, scale * (turn.x * surfel.s + turn.y * surfel.t),
                          scale * (turn.y * surfel.s + turn.z * surfel.t));
 }
 
 // `side`: side_of. `uv`: on the disk, in radii.
 vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
-    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
-    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
-    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
-    return side * normalize(surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t);
+    return side * normalize(leaning_normal(record, surfel, uv));
 }
 
 // All points under one light before the next light: reading a light costs more than using it.
 SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
-    const float side = side_of(surfel);
+    const float side = side_of(record, surfel);
     vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
         normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);

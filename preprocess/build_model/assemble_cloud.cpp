@@ -130,14 +130,21 @@ class Assembler {
         if (!cloud_.colours.empty()) info.flags |= format::kHasColours;
         info.lod_levels = 1;
         info.source_vertices = cloud_.positions.size();
-        std::vector<float> radii(model_.surfels.size());
-        tbb::parallel_for(std::size_t{0}, radii.size(),
-                          [&](std::size_t i) { radii[i] = float_from_half(model_.surfels[i].radius); });
-        const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-        std::nth_element(radii.begin(), middle, radii.end());
-        info.median_surfel_radius = *middle;
+        info.median_surfel_radius = median_radius();
         for (const format::Patch& patch : model_.patches)
             info.max_surfel_radius = std::max(info.max_surfel_radius, patch.max_surfel_radius);
+    }
+
+    // Halves above 0 are ordered as their bits are, so counting them sorts them.
+    float median_radius() const {
+        std::vector<std::uint64_t> counts(std::size_t{1} << 16);
+        for (const format::Surfel& surfel : model_.surfels)
+            ++counts[surfel.radius];
+        std::uint64_t smaller = 0;
+        std::uint32_t radius = 0;
+        while (smaller + counts[radius] <= model_.surfels.size() / 2)
+            smaller += counts[radius++];
+        return float_from_half(static_cast<std::uint16_t>(radius));
     }
 
     const UnitCloud& cloud_;

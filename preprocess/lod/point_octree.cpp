@@ -71,7 +71,7 @@ struct Part {
 
     // How far its disks go along `direction`.
     double reach(const Vec3d& direction) const {
-        const double in_plane = std::hypot(axes[0].dot(direction), axes[1].dot(direction));
+        const double in_plane = length_of(axes[0].dot(direction), axes[1].dot(direction));
         return std::min(in_plane + height * std::abs(normal.dot(direction)), sphere);
     }
 };
@@ -93,7 +93,7 @@ Part part_of(const format::Surfel& surfel) {
     part.below = static_cast<double>(extent.below);
     part.longest = r;
     part.height = 0;
-    part.sphere = std::hypot(r, std::max(part.above, part.below));
+    part.sphere = length_of(r, std::max(part.above, part.below));
     part.cone = 0;
     return part;
 }
@@ -219,7 +219,7 @@ class Builder {
                 cone = std::max(cone, std::acos(std::clamp(part.normal.dot(normal), -1.0, 1.0)) + part.cone);
             }
             const double height = offset.dot(normal),
-                         slant = std::hypot(part.axes[0].dot(normal), part.axes[1].dot(normal));
+                         slant = length_of(part.axes[0].dot(normal), part.axes[1].dot(normal));
             above = std::max(above, height + slant + part.above);
             below = std::max(below, -height + slant + part.below);
             largest_radius = std::max(largest_radius, part.longest);

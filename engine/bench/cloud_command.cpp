@@ -27,7 +27,8 @@ std::vector<std::string> row_of(const std::filesystem::path& file, const CloudCo
         return median(std::move(values));
     };
     const auto at = [&](const char* path) {
-        return median_of([&](const BakeRun& run) { return run.stats.at(nlohmann::json::json_pointer(path)).get<double>(); });
+        return median_of(
+            [&](const BakeRun& run) { return run.stats.at(nlohmann::json::json_pointer(path)).get<double>(); });
     };
     const double points = at("/output/surfels");
     std::vector<std::string> row{file.filename().string(), fmt::format("{:.0f}", points)};

@@ -32,10 +32,10 @@ struct Ground {
 
 Ground ground_at(double x, double y, double chance) {
     double height = 12 * std::sin(x / 90) * std::cos(y / 120) + 3 * std::sin((x + y) / 23);
-    const auto lot = static_cast<std::uint64_t>(std::floor(x / 25)) << 32 |
-                     static_cast<std::uint64_t>(std::floor(y / 25));
-    const double use = random_share(lot), inside = std::max(std::abs(std::remainder(x - 12.5, 25)),
-                                                            std::abs(std::remainder(y - 12.5, 25)));
+    const auto lot =
+        static_cast<std::uint64_t>(std::floor(x / 25)) << 32 | static_cast<std::uint64_t>(std::floor(y / 25));
+    const double use = random_share(lot),
+                 inside = std::max(std::abs(std::remainder(x - 12.5, 25)), std::abs(std::remainder(y - 12.5, 25)));
     if (use < 0.2 && inside < 8) return {std::floor(height / 3) * 3 + 9, {170, 90, 70}};
     if (use > 0.7 && inside < 10) return {height + 10 * chance, {50, static_cast<std::uint8_t>(90 + 60 * chance), 40}};
     height += 0.03 * chance;

@@ -2,11 +2,13 @@
 
 #include "engine/scene/ellipse_record.h"
 #include "engine/vulkan/transfer.h"
+#include "preprocess/model_format/packed_surfel.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 namespace splice {
 
@@ -59,8 +61,9 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
       patches_(model.patches.begin(), model.patches.end()),
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
-      hierarchy_(point_hierarchy(model.point_tree, model.patches, model.info->max_surfel_radius)),
-      surfels_(device, model.surfels.size(), gpu::MemoryUse::device, "surfels"),
+      hierarchy_(point_hierarchy(unpack_point_tree(model.point_tree), model.patches, model.info->max_surfel_radius)),
+      surfels_(device, model.surfel_count(), model.is_packed() ? SurfelRecords::kPacked : SurfelRecords::kPlain,
+               gpu::MemoryUse::device, "surfels"),
       pool_(device) {
     const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes) {
         gpu::Buffer result(device, {.size = bytes.size(), .usage = usage, .name = name});
@@ -69,9 +72,9 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     };
     vertices_ = buffer("vertices", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.vertices));
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
-    gpu::upload(device, surfels_.buffer(), std::as_bytes(model.surfels));
-    if (!hierarchy_.empty() && surfels_.mapped().empty())
-        surfel_copy_.assign(model.surfels.begin(), model.surfels.end());
+    const auto records = model.is_packed() ? std::as_bytes(model.packed_surfels) : std::as_bytes(model.surfels);
+    gpu::upload(device, surfels_.buffer(), records);
+    if (!hierarchy_.empty() && surfels_.buffer().mapped().empty()) record_copy_.assign(records.begin(), records.end());
     make_ellipses(model);
     create_materials(device, model);
 }
@@ -80,7 +83,7 @@ void GpuModel::make_ellipses(const ModelView& model) {
     ellipses_.resize(hierarchy_.nodes.size());
     tbb::parallel_for(std::size_t{0}, ellipses_.size(), [&](std::size_t i) {
         const format::PointNode& node = hierarchy_.nodes[i];
-        ellipses_[i] = ellipse_record(node, model.surfels[node.first_surfel].patch);
+        ellipses_[i] = ellipse_record(node, model.surfel(node.first_surfel).patch);
     });
 }
 
@@ -100,8 +103,20 @@ void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
     }
 }
 
-std::span<const format::Surfel> GpuModel::host_surfels() const {
-    return surfel_copy_.empty() ? surfels_.mapped() : std::span<const format::Surfel>(surfel_copy_);
+void GpuModel::copy_surfels(std::uint64_t first, std::span<format::Surfel> copies) const {
+    const std::span<const std::byte> records =
+        record_copy_.empty() ? std::span<const std::byte>(surfels_.buffer().mapped()) : record_copy_;
+    const std::byte* at = records.data() + first * surfels_.stride();
+    if (!surfels_.is_packed()) {
+        std::memcpy(copies.data(), at, copies.size_bytes());
+        return;
+    }
+    for (format::Surfel& copy : copies) {
+        format::PackedSurfel packed;
+        std::memcpy(&packed, at, sizeof packed);
+        copy = unpack_surfel(packed, static_cast<std::uint16_t>(first++ / kPackedBlock));
+        at += sizeof packed;
+    }
 }
 
 Box GpuModel::bounds() const {

@@ -31,8 +31,8 @@ class GpuModel {
     const gpu::Buffer& vertices() const { return vertices_; }
     const gpu::Buffer& indices() const { return indices_; }
     const SurfelStore& surfels() const { return surfels_; }
-    /// The records as the host may read them: of models with a point tree.
-    std::span<const format::Surfel> host_surfels() const;
+    /// Surfels from `first` on, as many as `copies` holds, unpacked; of models with a point tree.
+    void copy_surfels(std::uint64_t first, std::span<format::Surfel> copies) const;
     /// Empty where the model has no point tree.
     const PointHierarchy& hierarchy() const { return hierarchy_; }
     /// A record (ellipse_record.h) for each node of the hierarchy.
@@ -53,8 +53,8 @@ class GpuModel {
     std::vector<format::Surfel> ellipses_;
     gpu::Buffer vertices_, indices_;
     SurfelStore surfels_;
-    std::vector<format::Surfel> surfel_copy_;  // where the host cannot read the device's
-    std::vector<gpu::Image> images_;           // the last is a white texel
+    std::vector<std::byte> record_copy_;  // where the host cannot read the device's
+    std::vector<gpu::Image> images_;      // the last is a white texel
     gpu::UniqueSampler sampler_;
     gpu::DescriptorSetLayout set_layout_;
     gpu::DescriptorPool pool_;

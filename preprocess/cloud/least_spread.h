@@ -6,7 +6,7 @@
 namespace splice {
 
 struct LeastSpread {
-    Vec3d direction;             // unit
+    Vec3d direction;              // unit
     double middle = 0, most = 0;  // the other two eigenvalues, at least 0
 };
 

@@ -78,8 +78,7 @@ SPLICE_WIDE __m512 squared_length(__m512 x, __m512 y, __m512 z) {
 }
 
 // One vector of a sorted list after `found` was inserted; `before` is the entry in front of each.
-SPLICE_WIDE __m512d inserted(__m512d list, __m512d before,
-                                                                          __m512d found) {
+SPLICE_WIDE __m512d inserted(__m512d list, __m512d before, __m512d found) {
     return _mm512_max_pd(before, _mm512_min_pd(list, found));
 }
 
@@ -93,19 +92,19 @@ __attribute__((target("avx512f"))) void add_near_points_wide(const PointBlock& o
                  own_z = _mm512_load_ps(own.z.data());
     const __m512 to_box =
         squared_length(beyond(own_x, other.low[0], other.high[0]), beyond(own_y, other.low[1], other.high[1]),
-               beyond(own_z, other.low[2], other.high[2]));
+                       beyond(own_z, other.low[2], other.high[2]));
     unsigned near = _mm512_cmp_ps_mask(to_box, _mm512_load_ps(lists.reach.data()), _CMP_LE_OQ);
     if (near == 0) return;
     const __m512 other_x = _mm512_load_ps(other.x.data()), other_y = _mm512_load_ps(other.y.data()),
                  other_z = _mm512_load_ps(other.z.data());
-    const __m512i first_indices = _mm512_add_epi64(_mm512_set1_epi64(first_index),
-                                                   _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0)),
+    const __m512i first_indices =
+                      _mm512_add_epi64(_mm512_set1_epi64(first_index), _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0)),
                   last_indices = _mm512_add_epi64(first_indices, _mm512_set1_epi64(kLanes));
     for (; near != 0; near &= near - 1) {
         const auto q = static_cast<std::size_t>(std::countr_zero(near));
         const __m512 squared = squared_length(_mm512_sub_ps(other_x, _mm512_set1_ps(own.x[q])),
-                                      _mm512_sub_ps(other_y, _mm512_set1_ps(own.y[q])),
-                                      _mm512_sub_ps(other_z, _mm512_set1_ps(own.z[q])));
+                                              _mm512_sub_ps(other_y, _mm512_set1_ps(own.y[q])),
+                                              _mm512_sub_ps(other_z, _mm512_set1_ps(own.z[q])));
         unsigned hits = _mm512_cmp_ps_mask(squared, _mm512_set1_ps(lists.reach[q]), _CMP_LE_OQ);
         if (same) hits &= ~(1u << q);
         if (hits == 0) continue;

@@ -150,6 +150,7 @@ class Builder {
         // Normals that cancel out: any will do, the cone will say so.
         const bool usable = sums.normal.norm() > 1e-6 * sums.area;
         node.normal = encoded(usable ? sums.normal : decoded(surfels_[node.first_surfel].normal));
+        round_node(node);
     }
 
     // Of a node that has been bounded.
@@ -198,6 +199,7 @@ class Builder {
                       static_cast<double>(frame.t[2]));
         const Ellipse spread = ellipse_of(sums_[index].covariance.in_plane(centre, s, t));
         node.major_axis = encoded(spread.axis.x() * s + spread.axis.y() * t);
+        round_node(node);
         // From here on the axis that is stored; what it leaves the plane by is within the rounding added below.
         const Vec3d major = decoded(node.major_axis), minor = normal.cross(major);
 
@@ -230,6 +232,7 @@ class Builder {
         node.major = length(ellipse.major);
         node.minor = length(ellipse.minor);
         node.sphere_radius = length(sphere);
+        round_node(node);
         // A thousandth of a radian for the rounding of normals.
         node.cone_angle =
             static_cast<std::uint8_t>(std::min(std::ceil((cone + 1e-3) / std::numbers::pi * kConeSteps), kConeSteps));

@@ -1,10 +1,10 @@
 #include "preprocess/cloud/least_spread.h"
 #include "tests/cloud/cloud_shapes.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <random>
 
 using namespace splice;
@@ -22,9 +22,9 @@ TEST_CASE("the direction of least spread is the eigenvector that Eigen's iterati
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(0, 1);
     for (int i = 0; i < 2000; ++i) {
-        const Eigen::Quaterniond turn = Eigen::Quaterniond(share(random) - 0.5, share(random) - 0.5,
-                                                           share(random) - 0.5, share(random) - 0.5)
-                                            .normalized();
+        const Eigen::Quaterniond turn =
+            Eigen::Quaterniond(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5, share(random) - 0.5)
+                .normalized();
         const double scale = std::pow(10.0, -12 * share(random)), flat = std::pow(10.0, -9 * share(random));
         const Eigen::Matrix3d m = matrix_of(scale * Vec3d(0.05 * flat, 0.1 + share(random), 1.5), turn);
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);

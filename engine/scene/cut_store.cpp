@@ -65,7 +65,7 @@ class Gathering {
         DrawRange range{.first = count_};
         for (const CutRun& run : instance.cut.runs) {
             if (run.fits_point != points) continue;
-            if (!run.inner && run.count >= kInPlace) {
+            if (!run.inner && run.count >= kInPlace && instance.model->pager() == nullptr) {
                 in_place.push_back({.first = run.first, .count = run.count});
                 continue;
             }

@@ -72,6 +72,8 @@ class ModelFile {
     ~ModelFile();
     const ModelView& view() const { return view_; }
     std::span<const std::byte> bytes() const { return bytes_; }
+    /// Lets go of the memory that holds a part of them, until it is read again.
+    void release(std::span<const std::byte> part) const;
 
   private:
     std::span<const std::byte> bytes_;

@@ -49,7 +49,8 @@ PackedPointNode pack(const PointNode& node) {
     const TangentFrame frame = tangents_of(decode_octahedral(lengthen_normal(normal, kNormalBits)));
     packed.frame = normal | direction_of(decode_octahedral(node.major_axis), frame) << 24;
     const float ratio = node.major > 0 ? node.minor / float_from_half(packed.major) : 1;
-    packed.ratio = static_cast<std::uint8_t>(std::clamp(std::ceil(ratio * kRatioSteps - kRatioSlack), 0.0f, kRatioSteps));
+    packed.ratio =
+        static_cast<std::uint8_t>(std::clamp(std::ceil(ratio * kRatioSteps - kRatioSlack), 0.0f, kRatioSteps));
     std::copy_n(node.colour, 3, packed.colour);
     packed.cone_angle = node.cone_angle;
     packed.extent = node.extent;

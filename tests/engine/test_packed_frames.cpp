@@ -30,8 +30,8 @@ Model plain_sphere() {
     for (int i = 0; i < kSurfels; ++i) {
         const double z = 1 - (2 * i + 1.0) / kSurfels, around = i * std::numbers::pi * (3 - std::sqrt(5.0));
         const double across = std::sqrt(1 - z * z);
-        const float n[3] = {static_cast<float>(across * std::cos(around)), static_cast<float>(across * std::sin(around)),
-                            static_cast<float>(z)};
+        const float n[3] = {static_cast<float>(across * std::cos(around)),
+                            static_cast<float>(across * std::sin(around)), static_cast<float>(z)};
         format::Surfel surfel{};
         for (int axis = 0; axis < 3; ++axis)
             surfel.position[axis] = radius * n[axis];

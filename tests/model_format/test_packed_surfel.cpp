@@ -1,7 +1,6 @@
-#include "preprocess/model_format/packed_surfel.h"
-
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/packed_surfel.h"
 #include "preprocess/model_format/surfel_extent.h"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,5 @@
-#include "preprocess/model_format/point_node.h"
-
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <catch2/catch.hpp>
 

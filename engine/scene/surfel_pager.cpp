@@ -60,8 +60,7 @@ std::uint64_t SurfelPager::size_of(std::uint32_t block) const {
 }
 
 std::uint32_t SurfelPager::next_missing() const {
-    const auto missing =
-        std::ranges::find_if(wanted_, [&](std::uint32_t block) { return place_[block] == kNowhere; });
+    const auto missing = std::ranges::find_if(wanted_, [&](std::uint32_t block) { return place_[block] == kNowhere; });
     return missing == wanted_.end() ? kNowhere : *missing;
 }
 

@@ -1,6 +1,6 @@
-// Surfels of a model that is larger than the memory it may take: blocks of its file's records, read by a thread of their
-// own when frames want them, and given up when room is needed for others. Frames never wait for the thread unless they
-// say so: they draw what is there, and nodes of the point tree, which is always there, in place of what is not.
+// Surfels of a model that is larger than the memory it may take: blocks of its file's records, read by a thread of
+// their own when frames want them, and given up when room is needed for others. Frames never wait for the thread unless
+// they say so: they draw what is there, and nodes of the point tree, which is always there, in place of what is not.
 #pragma once
 
 #include <condition_variable>

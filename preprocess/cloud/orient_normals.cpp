@@ -119,9 +119,12 @@ class Orienter {
         for (std::size_t a = piece * kPiece; a < end_of(piece); ++a) {
             for (const std::uint32_t b : neighbours_[a]) {
                 if (set_[a] == set_[b]) continue;
+                // Edges that both ends name are counted twice at once.
+                const bool mutual = is_neighbour(b, a);
+                if (b < a && mutual) continue;
                 const auto [low, high] = std::minmax(set_[a], set_[b]);
                 const Edge found = edge(a, b);
-                const auto weight = static_cast<double>(found.certainty);
+                const double weight = (mutual ? 2 : 1) * static_cast<double>(found.certainty);
                 votes.push_back({std::uint64_t{low} << 32 | high, found.opposite ? weight : -weight});
             }
         }

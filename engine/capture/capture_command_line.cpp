@@ -111,7 +111,8 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, kernel, points_below;
+        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, memory, kernel,
+        points_below;
     bool one_sided = false, two_sided = false;
 };
 
@@ -148,6 +149,9 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
                 raw.kernel + "\"");
     }
     if (!raw.tau.empty()) command.tau = parse_in_range(raw.tau, "--tau", 0, 1000, " pixels");
+    if (!raw.memory.empty())
+        command.memory =
+            static_cast<std::uint64_t>(parse_in_range(raw.memory, "--memory", 1, 1e9, " MB") * 1024 * 1024);
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
     if (!raw.prefilter.empty()) command.prefilter = parse_switch(raw.prefilter, "--prefilter");
@@ -270,6 +274,10 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
                    "Level of detail: how many pixels what is drawn may reach beyond its place, 0 to 1000; default 0, "
                    "full detail")
         ->option_text("PIXELS");
+    app.add_option("--memory", raw.memory,
+                   "Hold at most so many MB of surfels, 1 to 1e9; the others stay in the model file and are read as "
+                   "frames need them. Default: all are held")
+        ->option_text("MB");
     app.add_option("--stats", raw.stats,
                    "Write times and counts as JSON; the frame is rendered twice, the second timed")
         ->option_text("FILE");

@@ -6,6 +6,7 @@
 #include "engine/render_graph/executor/executor.h"
 #include "engine/scene/cut_store.h"
 #include "engine/scene/gpu_model.h"
+#include "engine/scene/settle_pages.h"
 #include "engine/vulkan/transfer.h"
 #include "preprocess/model_format/error.h"
 
@@ -143,6 +144,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .tau = settings.tau * antialias};
     DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
     const auto selected = Clock::now();
+    const PageStats pages = settle_pages(draws, settings.wait_for_data);
     cut_store.gather(draws, view == View::kLevels);
     const auto gathered = Clock::now();
     passes.data.update(frame, scene.lighting, scene.background);
@@ -163,6 +165,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         if (stats->drawn_by.empty() || share.surfels > stats->drawn_by.front().surfels) stats->backend = share.backend;
         stats->drawn_by.push_back({share.backend, share.surfels});
     }
+    stats->pages = pages;
     stats->antialias = antialias;
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;
@@ -187,8 +190,8 @@ Renderer::Renderer(const RendererOptions& options) : implementation_(std::make_u
 Renderer::Renderer(gpu::Device& device) : implementation_(std::make_unique<Implementation>(device)) {}
 Renderer::~Renderer() = default;
 
-std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model) {
-    return std::make_shared<const GpuModel>(implementation_->device, model);
+std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model, const Paging& paging) {
+    return std::make_shared<const GpuModel>(implementation_->device, model, paging);
 }
 
 Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {

@@ -9,7 +9,7 @@
 // deviation of 0.7 pixels) is hardly wider than the prefilter's (0.55).
 #pragma once
 
-#include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <glm/glm.hpp>
 

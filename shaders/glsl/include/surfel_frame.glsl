@@ -1,20 +1,7 @@
 // From a surfel of the model file to its splat on screen and its lit colour: shared by every backend. Needs frame.glsl,
-// octahedral.glsl, colour.glsl, lighting.glsl, splat.glsl.
+// octahedral.glsl, colour.glsl, lighting.glsl, splat.glsl, surfel_record.glsl.
 #ifndef SPLICE_SURFEL_FRAME_GLSL
 #define SPLICE_SURFEL_FRAME_GLSL
-
-// format::Surfel, decoded.
-struct SurfelRecord {
-    vec3 position;
-    float radius;  // below 0: an ellipse, engine/scene/ellipse_record.h
-    vec2 normal;  // octahedral
-    vec3 colour;  // sRGB-encoded
-    float bend_0;  // format::Surfel::shading_bend, 1 for the largest
-    vec4 bend_1_4;
-    uint patch_number;
-    uint extent;  // preprocess/model_format/surfel_extent.h
-    uint clip;    // preprocess/model_format/surfel_clip.h; of an ellipse, its axes
-};
 
 bool is_ellipse(SurfelRecord record) { return record.radius < 0; }
 
@@ -34,16 +21,6 @@ struct SurfelFrame {
     float radius;               // along s, world units
     float ratio;                // of the half axis along t to it; 1 for a disk
 };
-
-// kSwellStep, kSwellStep, kEpsilonStep; kSwellOne, kSwellOne, kEpsilonOne
-const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
-const vec3 EXTENT_ONES = vec3(31, 31, 24);
-
-// Above, below, epsilon, in radii.
-vec3 decode_extent(uint bits) {
-    const uvec3 steps = uvec3(bits & 31, bits >> 5 & 31, bits >> 10);
-    return mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
-}
 
 // kClipDirections, kClipSteps
 const float CLIP_DIRECTIONS = 64;
@@ -87,11 +64,11 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
         radius *= frame.sample_radius;
     }
     surfel.radius = radius;
-    const vec3 shares = decode_extent(record.extent);
+    const vec2 swell = decode_extent(record.extent).xy;
     return make_splat(centre, normal, surfel.s, surfel.t, radius, surfel.ratio,
-                      VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      VIEW == VIEW_SAMPLES ? vec2(0) : swell,
                       VIEW == VIEW_SAMPLES || is_ellipse(record) ? NO_CLIP : decode_clip(record.clip),
-                      shares.z * baked_radius * instance.epsilon_scale, splat);
+                      record.epsilon * baked_radius * instance.epsilon_scale, splat);
 }
 
 // format::kLargestBend

@@ -57,7 +57,8 @@ struct CaptureSettings {
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
-    double tau = 0;  // pixels by which a level of detail may be off (engine/scene/lod_cut.h); 0: full detail
+    double tau =
+        0;  // pixels that an ellipse may be long that stands for surfels (engine/scene/lod_cut.h); 0: full detail
     Backend backend = Backend::kSprite;
     std::optional<double> points_below = {};  // pixels: patches whose splats are all at most this wide are drawn as
                                               // points by every backend but sprites; none: as the backend chooses

@@ -267,8 +267,8 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
            "gaussian:0.3, 0.5, 0.8; confetti:1,1.5,2, 6,1.5,3, 4,1.5,5")
         ->option_text("gaussian:SIGMA|confetti:A,B,N|constant");
     app.add_option("--tau", raw.tau,
-                   "Level of detail: how many pixels what is drawn may reach beyond its place, 0 to 1000; default 0, "
-                   "full detail")
+                   "Level of detail: how many pixels an ellipse may be long that stands for many surfels, 0 to 1000; "
+                   "default 0, full detail")
         ->option_text("PIXELS");
     app.add_option("--stats", raw.stats,
                    "Write times and counts as JSON; the frame is rendered twice, the second timed")

@@ -2,6 +2,8 @@
 
 #include "engine/scene/gpu_model.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -242,29 +244,35 @@ class Culler {
     std::vector<bool> by_triangles_;  // surfel patches, where the cut chose
 };
 
+void place(const Instance& instance, const glm::dmat4& view, Sides sides, InstanceDraws& draws) {
+    const format::ModelInfo& info = instance.model->info();
+    const Transform& transform = instance.transform;
+    draws.model = instance.model.get();
+    draws.surfels = &instance.model->surfels();
+    draws.scale = transform.scale * info.source_scale;
+    glm::dmat4 to_world(transform.rotation * draws.scale);
+    to_world[3] =
+        glm::dvec4(transform.rotation * (vector_of(info.source_offset) * transform.scale) + transform.translation, 1);
+    draws.model_to_view = view * to_world;
+    draws.two_sided = sides == Sides::kAsBaked ? instance.model->two_sided() : sides == Sides::kTwoSided;
+}
+
 }  // namespace
 
 DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
                          const DrawListOptions& options) {
     DrawList list;
+    list.instances.resize(scene.instances.size());
     const glm::dmat4 view = view_matrix(camera);
     std::uint32_t first_patch = 0;
-    for (const Instance& instance : scene.instances) {
-        const format::ModelInfo& info = instance.model->info();
-        const Transform& transform = instance.transform;
-        InstanceDraws draws;
-        draws.model = instance.model.get();
-        draws.surfels = &instance.model->surfels();
-        draws.scale = transform.scale * info.source_scale;
-        glm::dmat4 to_world(transform.rotation * draws.scale);
-        to_world[3] = glm::dvec4(
-            transform.rotation * (vector_of(info.source_offset) * transform.scale) + transform.translation, 1);
-        draws.model_to_view = view * to_world;
-        draws.two_sided =
-            options.sides == Sides::kAsBaked ? instance.model->two_sided() : options.sides == Sides::kTwoSided;
-        draws.first_patch = first_patch;
-        first_patch += static_cast<std::uint32_t>(instance.model->patches().size());
-        Culler(camera, width, height, options, draws).visit_all();
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        place(scene.instances[i], view, options.sides, list.instances[i]);
+        list.instances[i].first_patch = first_patch;
+        first_patch += static_cast<std::uint32_t>(scene.instances[i].model->patches().size());
+    }
+    tbb::parallel_for(std::size_t{0}, list.instances.size(),
+                      [&](std::size_t i) { Culler(camera, width, height, options, list.instances[i]).visit_all(); });
+    for (const InstanceDraws& draws : list.instances) {
         for (const DrawRange& range : draws.triangles)
             list.triangles += range.count / 3;
         for (const auto* ranges : {&draws.sprites, &draws.quads, &draws.small})
@@ -272,7 +280,6 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
                 list.surfels += range.count;
         list.cut += draws.cut.statistics;
         list.surfels += draws.cut.statistics.ellipses + draws.cut.statistics.surfels;
-        list.instances.push_back(std::move(draws));
     }
     if (options.tau > 0)
         list.predicted_ms = 1e-3 * (options.costs.triangle * static_cast<double>(list.triangles) +

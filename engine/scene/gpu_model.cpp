@@ -77,9 +77,9 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
 }
 
 void GpuModel::make_ellipses(const ModelView& model) {
-    ellipses_.resize(hierarchy_.nodes.size());
+    ellipses_.resize(model.point_tree.size());
     tbb::parallel_for(std::size_t{0}, ellipses_.size(), [&](std::size_t i) {
-        const format::PointNode& node = hierarchy_.nodes[i];
+        const format::PointNode& node = model.point_tree[i];
         ellipses_[i] = ellipse_record(node, model.surfels[node.first_surfel].patch);
     });
 }

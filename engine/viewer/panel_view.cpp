@@ -99,7 +99,8 @@ void draw_view_section(PanelContext& context) {
         look.antialias = static_cast<std::uint32_t>(std::clamp(samples, 1, static_cast<int>(kMostSamplesPerSide)));
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Samples along each side of a pixel; one while the camera moves");
     edit_number("Tau", look.tau, 0, 8, "%.1f px");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("By how much levels of detail may be off; 0: full detail");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("How long an ellipse may be that stands for many surfels; 0: full detail");
     ImGui::Checkbox("Coarser while moving", &state.reduce_while_moving);
     if (!state.scene) return;
     Background& background = state.scene->loaded.scene.background;

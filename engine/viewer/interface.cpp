@@ -157,7 +157,7 @@ void InterfaceDrawing::shut_down() {
 }
 
 void InterfaceDrawing::draw(const graph::PassContext& context) {
-    const std::shared_ptr<const gpu::UniqueRenderPass> owner = context.render_pass_owner.lock();
+    const std::shared_ptr<const gpu::UniqueRenderPass> owner = *context.render_pass_owner;
     if (owner == render_pass_ && !fonts_missing_) {
         ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), context.commands);
         return;

@@ -29,7 +29,7 @@ class VirtualDisplay {
     /// Of the window, without borders, as shown.
     Picture picture() const;
     /// The picture once `wanted` likes it and it stands still, or the last one after so many seconds.
-    Picture picture_when(const std::function<bool(const Picture&)>& wanted, double seconds = 20) const;
+    Picture picture_when(const std::function<bool(const Picture&)>& wanted, double seconds = 90) const;
     /// Once it stands still.
     Picture still_picture() const;
 

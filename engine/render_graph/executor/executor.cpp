@@ -185,7 +185,7 @@ void Executor::State::record_group(const Graph& graph, const Group& group, PassC
     if (graphics) {
         begin_render_pass(commands, graph, group.render_pass);
         const RenderPass& planned = current->plan().render_passes[group.render_pass];
-        context.render_pass_owner = current->render_pass(group.render_pass);
+        context.render_pass_owner = &current->render_pass(group.render_pass);
         context.render_pass = current->render_pass(group.render_pass)->get();
         context.extent = {planned.width, planned.height};
         context.samples = planned.samples;

@@ -32,8 +32,10 @@ struct PassContext {
     // Graphics passes: inside the render pass; viewport (y down, depth 0..1) and scissor cover `extent`, set anew for
     // every pass. Pipelines must be created for (render_pass, subpass).
     VkRenderPass render_pass = VK_NULL_HANDLE;
-    /// The same for whoever outlives it: Vulkan may give the handle of one that was destroyed to another.
-    std::weak_ptr<const gpu::UniqueRenderPass> render_pass_owner;
+    /// The same for whoever outlives it: Vulkan may give the handle of one that was destroyed to another. Lives as long
+    /// as the plan; not null inside a render pass. (A pointer to it, since copies of shared pointers cost as much as
+    /// some commands.)
+    const std::shared_ptr<const gpu::UniqueRenderPass>* render_pass_owner = nullptr;
     uint32_t subpass = 0;
     VkExtent2D extent{};
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;

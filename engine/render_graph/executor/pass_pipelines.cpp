@@ -7,7 +7,7 @@ VkPipeline PassPipelines::get(const gpu::Device& device, const PassContext& cont
     // Most routines have but one, which no search and no reference count is needed for.
     const auto first = pipelines_.begin();
     if (first != pipelines_.end() && same(first->first, context)) return first->second.handle();
-    const Place place{context.render_pass_owner, context.subpass};
+    const Place place{*context.render_pass_owner, context.subpass};
     if (const auto known = pipelines_.find(place); known != pipelines_.end()) return known->second.handle();
     std::erase_if(pipelines_, [](const auto& entry) { return entry.first.render_pass.expired(); });
     gpu::GraphicsPipelineOptions filled = options();

@@ -33,8 +33,8 @@ class PassPipelines {
         }
     };
     static bool same(const Place& place, const PassContext& context) {
-        return place.subpass == context.subpass && !place.render_pass.owner_before(context.render_pass_owner) &&
-               !context.render_pass_owner.owner_before(place.render_pass);
+        return place.subpass == context.subpass && !place.render_pass.owner_before(*context.render_pass_owner) &&
+               !context.render_pass_owner->owner_before(place.render_pass);
     }
     std::map<Place, gpu::GraphicsPipeline> pipelines_;
 };

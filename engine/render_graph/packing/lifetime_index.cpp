@@ -61,20 +61,24 @@ void LifetimeIndex::add(uint32_t index, uint64_t offset) {
     earliest_last_ = std::min(earliest_last_, item.last);
 }
 
+/// Which entries live with the item is as good as random: all are copied, and those that do are kept, without a branch.
 bool LifetimeIndex::gather(const PackItem& item) {
-    gathered_.clear();
+    size_t count = 0;
     for (const Level& level : levels_) {
         if (level.entries == 0) continue;
         const uint32_t earlier = (item.first >> level.shift) > 0 ? (item.first >> level.shift) - 1 : 0;
         for (uint32_t bucket = earlier; bucket <= item.last >> level.shift; ++bucket) {
             const uint32_t begin = starts_[level.first_bucket + bucket], end = ends_[level.first_bucket + bucket];
+            gathered_.resize(std::max(gathered_.size(), count + (end - begin)));
             for (uint32_t i = begin; i < end; ++i) {
                 const Entry& entry = entries_[i];
-                if (entry.first <= item.last && item.first <= entry.last) gathered_.push_back({entry.begin, entry.end});
+                gathered_[count] = {entry.begin, entry.end};
+                count += (entry.first <= item.last) & (item.first <= entry.last);
             }
-            if (gathered_.size() > kMostGathered) return false;
+            if (count > kMostGathered) return false;
         }
     }
+    gathered_count_ = count;
     return true;
 }
 
@@ -91,11 +95,12 @@ uint64_t LifetimeIndex::lowest_free(const PackItem& item) {
         return align_up(height_, item.alignment);
     }
     if (!gather(item)) return above_all(item);
-    std::sort(gathered_.begin(), gathered_.end(), [](const Bytes& a, const Bytes& b) { return a.begin < b.begin; });
+    const std::span<Bytes> taken(gathered_.data(), gathered_count_);
+    std::sort(taken.begin(), taken.end(), [](const Bytes& a, const Bytes& b) { return a.begin < b.begin; });
     uint64_t offset = 0;
-    for (const Bytes& taken : gathered_) {
-        if (offset + item.size <= taken.begin) break;
-        offset = std::max(offset, align_up(taken.end, item.alignment));
+    for (const Bytes& bytes : taken) {
+        if (offset + item.size <= bytes.begin) break;
+        offset = std::max(offset, align_up(bytes.end, item.alignment));
     }
     return offset;
 }

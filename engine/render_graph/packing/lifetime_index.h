@@ -44,7 +44,8 @@ class LifetimeIndex {
     std::vector<Level> levels_;
     std::vector<uint32_t> starts_, ends_;  // one a bucket: its entries
     std::vector<Entry> entries_;
-    std::vector<Bytes> gathered_;
+    std::vector<Bytes> gathered_;  // the first gathered_count_ live with the item in question
+    size_t gathered_count_ = 0;
     std::vector<uint64_t> tops_;  // the highest byte in use in each 16 moments
     // Of all items added: whether they form one stack without gaps, and a moment that is in the life of each.
     uint64_t height_ = 0, total_ = 0;

@@ -3,6 +3,7 @@
 #include "engine/bench/bench_bake.h"
 #include "engine/bench/bench_quality.h"
 #include "engine/bench/confetti_command.h"
+#include "engine/bench/costs_command.h"
 #include "engine/bench/frame/frame_command.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
@@ -148,7 +149,14 @@ int run(int argc, char** argv) {
     confetti_command.folder = default_folder();
     const CLI::App& confetti = bench::add_confetti_command(app, confetti_command);
 
+    bench::CostsCommand costs_command;
+    const CLI::App& costs = bench::add_costs_command(app, costs_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (costs.parsed()) {
+        bench::run_costs_command(costs_command);
+        return 0;
+    }
     if (confetti.parsed()) {
         bench::run_confetti_command(confetti_command);
         return 0;

@@ -225,6 +225,8 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
             look.prefilter = description.prefilter;
             look.shading = description.shading;
             look.antialias = description.antialias;
+            look.tau = description.tau;
+            look.kernel = description.kernel;
         }
     } else if (state_.scene) {
         // The same scene, baked anew: what was set in the window stays.

@@ -109,6 +109,8 @@ void Viewer::save_scene(const std::filesystem::path& path) {
     description.prefilter = settings.prefilter;
     description.shading = settings.shading;
     description.antialias = settings.antialias;
+    description.tau = settings.tau;
+    description.kernel = settings.kernel;
     write_text_file(path, write_scene(description, std::filesystem::absolute(path).parent_path()));
     report("Wrote " + path.string(), false);
 }

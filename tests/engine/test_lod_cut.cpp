@@ -275,3 +275,51 @@ TEST_CASE("a node's record holds its ellipse, and hardly more") {
         CHECK(axes.minor <= 1.15 * static_cast<double>(node.minor));
     }
 }
+
+TEST_CASE("a patch is in the cut by its triangles or by its surfels, whichever cost less") {
+    // Of the nodes of one level, each stands for a patch.
+    Points points = bulging_sphere(20000);
+    std::vector<format::Patch> patches;
+    const format::PointNode& root = points.nodes.front();
+    for (std::uint32_t child = 0; child < root.child_count; ++child) {
+        const format::PointNode& node = points.nodes[root.first_child + child];
+        format::Patch patch{};
+        patch.first_surfel = node.first_surfel;
+        patch.surfel_count = node.surfel_count;
+        patches.push_back(patch);
+    }
+    REQUIRE(patches.size() > 2);
+    points.hierarchy = point_hierarchy(points.nodes, patches, points.hierarchy.largest_radius);
+    CutView view = view_from(2, 4);
+    const LodCut surfels = cut_points(points.hierarchy, view);
+    const auto cut_with = [&](const std::vector<double>& costs) {
+        view.triangle_costs = costs;
+        return cut_points(points.hierarchy, view);
+    };
+    std::vector<double> costs(patches.size(), 1e9);
+    CHECK(times_in(cut_with(costs), points) == times_in(surfels, points));
+    CHECK(elements(cut_with(costs)) == elements(surfels));
+    CHECK(cut_with(costs).triangle_patches.empty());
+    costs.assign(patches.size(), 0);
+    CHECK(cut_with(costs).runs.empty());
+    CHECK(cut_with(costs).triangle_patches.size() == patches.size());
+    // One patch at exactly what its surfels cost, and at less: only that patch changes.
+    costs.assign(patches.size(), 1e9);
+    costs[1] = 0;
+    const std::uint64_t own = elements(surfels) - elements(cut_with(costs));
+    REQUIRE(own > 10);
+    costs[1] = static_cast<double>(own);
+    CHECK(elements(cut_with(costs)) == elements(surfels));
+    CHECK(cut_with(costs).triangle_patches.empty());
+    costs[1] = static_cast<double>(own) - 1;
+    const LodCut mixed = cut_with(costs);
+    CHECK(mixed.triangle_patches == std::vector<std::uint32_t>{1});
+    const std::vector<int> times = times_in(mixed, points);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const bool inside = i >= patches[1].first_surfel && i < patches[1].first_surfel + patches[1].surfel_count;
+        if (times[i] != (inside ? 0 : 1)) {
+            CAPTURE(i, inside, times[i]);
+            FAIL("a surfel is not in the cut as often as it should be");
+        }
+    }
+}

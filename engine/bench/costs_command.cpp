@@ -30,19 +30,22 @@ struct Row {
 
 std::string table_text(const DrawCosts& costs) {
     return fmt::format(
-        ".frame = {:.0f}, .frame_pixel = {:.4f}, .triangle = {:.4f}, .triangle_hit = {:.4f}, .triangle_pixel = {:.4f}, .splat = {:.4f}, "
+        ".frame = {:.0f}, .frame_pixel = {:.4f}, .triangle = {:.4f}, .triangle_hit = {:.4f}, .triangle_pixel = {:.4f}, "
+        ".splat = {:.4f}, "
         ".splat_pixel = {:.4f}",
-        costs.frame, costs.frame_pixel, costs.triangle, costs.triangle_hit, costs.triangle_pixel, costs.splat, costs.splat_pixel);
+        costs.frame, costs.frame_pixel, costs.triangle, costs.triangle_hit, costs.triangle_pixel, costs.splat,
+        costs.splat_pixel);
 }
 
 std::string samples_text(const Calibration& calibration) {
-    Table table({"triangles", "hits", "their pixels", "splats", "their pixels", "picture's pixels", "measured ms", "fitted ms"});
+    Table table({"triangles", "hits", "their pixels", "splats", "their pixels", "picture's pixels", "measured ms",
+                 "fitted ms"});
     for (const CostSample& sample : calibration.samples) {
         const DrawLoad& load = sample.load;
-        table.add({fmt::format("{:.0f}", load.triangles), fmt::format("{:.0f}", load.triangle_hits), fmt::format("{:.0f}", load.triangle_pixels),
-                   fmt::format("{:.0f}", load.splats), fmt::format("{:.0f}", load.splat_pixels),
-                   fmt::format("{:.0f}", load.frame_pixels), fmt::format("{:.2f}", sample.ms),
-                   fmt::format("{:.2f}", predicted_ms(calibration.costs, load))});
+        table.add({fmt::format("{:.0f}", load.triangles), fmt::format("{:.0f}", load.triangle_hits),
+                   fmt::format("{:.0f}", load.triangle_pixels), fmt::format("{:.0f}", load.splats),
+                   fmt::format("{:.0f}", load.splat_pixels), fmt::format("{:.0f}", load.frame_pixels),
+                   fmt::format("{:.2f}", sample.ms), fmt::format("{:.2f}", predicted_ms(calibration.costs, load))});
     }
     return table.text();
 }
@@ -54,8 +57,7 @@ std::vector<Row> measure(Renderer& renderer, const std::filesystem::path& file, 
     std::vector<Row> rows;
     for (const double zoom : kZooms) {
         Row row{file.stem().string(), zoom, settings};
-        row.settings.camera =
-            frame_camera(loaded.scene.bounds(), {.zoom = zoom}, settings.width, settings.height);
+        row.settings.camera = frame_camera(loaded.scene.bounds(), {.zoom = zoom}, settings.width, settings.height);
         for (const double tau : command.taus) {
             rows.push_back(row);
             rows.back().settings.tau = tau;

@@ -1,5 +1,5 @@
-// splice-bench costs: what drawing takes on a device (engine/scene/draw_costs.h), how well that predicts frames, and how
-// long frames take that are to take so long.
+// splice-bench costs: what drawing takes on a device (engine/scene/draw_costs.h), how well that predicts frames, and
+// how long frames take that are to take so long.
 #pragma once
 
 #include <filesystem>

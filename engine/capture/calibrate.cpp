@@ -11,11 +11,11 @@ namespace splice {
 
 namespace {
 
-constexpr int kRounds = 7;
+constexpr int kRounds = 5;
 // One whose triangles are larger than a pixel, from near, and one whose are smaller.
-constexpr std::array<std::uint64_t, 2> kTriangles{5'000, 80'000};
-constexpr std::array<double, 3> kZooms{1, 0.5, 0.15};
-constexpr std::array<std::uint32_t, 2> kSides{256, 768};  // pixels
+constexpr std::array<std::uint64_t, 2> kTriangles{4'000, 40'000};
+constexpr std::array<double, 2> kZooms{1, 0.25};
+constexpr std::array<std::uint32_t, 2> kSides{192, 512};  // pixels
 
 std::shared_ptr<const GpuModel> sphere(Renderer& renderer, std::uint64_t triangles, ForcedRepresentation drawn_as) {
     RepairReport report;

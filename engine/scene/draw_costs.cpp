@@ -13,7 +13,8 @@ using Terms = std::array<double, kTerms>;
 
 // In the order of DrawCosts.
 Terms terms_of(const DrawLoad& load) {
-    return {1, load.frame_pixels, load.triangles, load.triangle_hits, load.triangle_pixels, load.splats, load.splat_pixels};
+    return {1,           load.frame_pixels, load.triangles, load.triangle_hits, load.triangle_pixels,
+            load.splats, load.splat_pixels};
 }
 
 }  // namespace
@@ -30,8 +31,8 @@ DrawLoad& DrawLoad::operator+=(const DrawLoad& other) {
 
 double predicted_ms(const DrawCosts& costs, const DrawLoad& load) {
     return 1e-3 * (costs.frame + costs.frame_pixel * load.frame_pixels + costs.triangle * load.triangles +
-                   costs.triangle_hit * load.triangle_hits + costs.triangle_pixel * load.triangle_pixels + costs.splat * load.splats +
-                   costs.splat_pixel * load.splat_pixels);
+                   costs.triangle_hit * load.triangle_hits + costs.triangle_pixel * load.triangle_pixels +
+                   costs.splat * load.splats + costs.splat_pixel * load.splat_pixels);
 }
 
 // Coordinate descent on the normal equations: each cost in turn takes its best value, not below 0, which comes to the

@@ -52,9 +52,16 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
 
 TEST_CASE("levels of detail: by the command line, else by the scene; budgets and costs are in the statistics") {
     const TemporaryFolder folder;
-    write_small_model(folder / "a.splice");
+    // Two colours that blend where they meet, by the kernel.
+    HandmadeModel model;
+    auto surfels = sheet({-0.5f, -0.5f, 0}, {0.5f, 0, 0}, {0, 1, 0}, 8, kRed);
+    const auto others = sheet({0, -0.5f, 0}, {0.5f, 0, 0}, {0, 1, 0}, 8, kGreen);
+    surfels.insert(surfels.end(), others.begin(), others.end());
+    model.add_surfels(surfels);
+    model.add_triangles(quad({0.6f, -0.5f, 0}, {0.3f, 0, 0}, {0, 1, 0}, kGreen));
+    write_model(view_of(model.model()), folder / "a.splice");
     write_text(folder / "scene.json",
-               R"({"models": [{"file": "a.splice"}], "render": {"tau": 3, "kernel": "gaussian:0.5"}})");
+               R"({"models": [{"file": "a.splice"}], "render": {"tau": 3, "kernel": "gaussian:0.8"}})");
     const auto stats = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), {"-o", "a.png", "--size", "40x30", "--stats", "a.json"});
         const Outcome outcome = capture(folder, arguments);

@@ -1,77 +1,20 @@
 #include "engine/bench/bench_bake.h"
 
+#include "engine/bench/run_bake.h"
 #include "engine/bench/table.h"
-#include "preprocess/model_format/error.h"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <system_error>
 
 namespace splice::bench {
 namespace {
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::array kStages{"read",   "repair", "cluster",  "judge", "simplify",
                              "sample", "prune",  "assemble", "write", "total"};
-
-class ScratchFolder {
-  public:
-    ScratchFolder() {
-        std::string pattern = (fs::temp_directory_path() / "splice-bench-XXXXXX").string();
-        if (!mkdtemp(pattern.data())) throw SystemError("cannot create a temporary folder like " + pattern);
-        path_ = pattern;
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
-
-/// Waits for it; its messages go where ours go. Throws SystemError unless it exits with 0.
-void run(const std::vector<std::string>& command) {
-    std::vector<char*> argv;
-    for (const std::string& word : command)
-        argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    if (const int error = posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ))
-        throw SystemError(command[0] + ": " + std::system_category().message(error));
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR) throw SystemError(command[0] + ": cannot wait for it");
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw SystemError(command[0] + " failed on " + command[1]);
-}
-
-json bake_once(const fs::path& mesh, const std::vector<std::string>& arguments) {
-    const ScratchFolder scratch;
-    const fs::path stats = scratch.path() / "stats.json";
-    std::vector<std::string> command{(fs::read_symlink("/proc/self/exe").parent_path() / "splice-bake").string(),
-                                     mesh.string(),
-                                     "-o",
-                                     (scratch.path() / "model.splice").string(),
-                                     "--stats",
-                                     stats.string(),
-                                     "--quiet"};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    run(command);
-    std::ifstream file(stats);
-    return json::parse(file);
-}
 
 double median_of(const std::vector<json>& runs, const json::json_pointer& figure) {
     std::vector<double> values;
@@ -95,7 +38,7 @@ json bench_bake(const std::vector<BenchModel>& models, const BakeBenchOptions& o
         std::vector<json> runs;
         for (int i = 0; i < options.runs; ++i) {
             if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[Kbake {} {}/{}", model.name, i + 1, options.runs);
-            runs.push_back(bake_once(model.path, options.arguments));
+            runs.push_back(run_bake(model.path, options.arguments).stats);
         }
         if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
 

@@ -116,12 +116,12 @@ class Bench {
         const Model model = build_cloud_model(points_of(path), {}, stats);
         const std::string name = path.stem().stem().string();
         const double megabytes = 1e-6 * static_cast<double>(serialise_model(view_of(model)).size());
-        const auto points = static_cast<double>(model.surfels.size());
-        builds_.add({name, std::to_string(model.surfels.size()), std::to_string(model.point_tree.size()),
+        const auto points = static_cast<double>(view_of(model).surfel_count());
+        builds_.add({name, std::to_string(view_of(model).surfel_count()), std::to_string(model.point_tree.size()),
                      number(megabytes, 1), number(1e6 * megabytes / points, 1), number(stats.seconds_assemble, 2),
                      number(stats.seconds_total, 2)});
         report_["builds"].push_back({{"model", name},
-                                     {"points", model.surfels.size()},
+                                     {"points", view_of(model).surfel_count()},
                                      {"nodes", model.point_tree.size()},
                                      {"megabytes", megabytes},
                                      {"seconds_octree", stats.seconds_assemble},

@@ -2,6 +2,7 @@
 // machine.
 #include "engine/bench/bench_bake.h"
 #include "engine/bench/bench_quality.h"
+#include "engine/bench/cloud_command.h"
 #include "engine/bench/confetti_command.h"
 #include "engine/bench/costs_command.h"
 #include "engine/bench/frame/frame_command.h"
@@ -149,12 +150,19 @@ int run(int argc, char** argv) {
     confetti_command.folder = default_folder();
     const CLI::App& confetti = bench::add_confetti_command(app, confetti_command);
 
+    bench::CloudCommand cloud_command;
+    const CLI::App& cloud = bench::add_cloud_command(app, cloud_command);
+
     bench::CostsCommand costs_command;
     const CLI::App& costs = bench::add_costs_command(app, costs_command);
 
     if (!parse_command_line(app, argc, argv)) return 0;
     if (costs.parsed()) {
         bench::run_costs_command(costs_command);
+        return 0;
+    }
+    if (cloud.parsed()) {
+        bench::run_cloud_command(cloud_command);
         return 0;
     }
     if (confetti.parsed()) {

@@ -15,6 +15,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/kernel.h"
+#include "engine/scene/paging.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shading.h"
 #include "engine/scene/shown.h"
@@ -65,7 +66,9 @@ struct CaptureSettings {
     Backend backend = Backend::kSprite;
     std::optional<double> points_below = {};  // pixels: patches whose splats are all at most this wide are drawn as
                                               // points by every backend but sprites; none: as the backend chooses
-    bool force_quads = false;                 // draw every surfel as an oriented quad, none as a point sprite
+    bool wait_for_data = true;  // of paged models, until all that the frame needs is in memory; else nodes
+                                // of the point tree stand for what is not
+    bool force_quads = false;   // draw every surfel as an oriented quad, none as a point sprite
     friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
 };
 
@@ -104,6 +107,7 @@ struct FrameStats {
     double predicted_ms = 0;  // of the frame, by CaptureSettings::costs
     DrawCosts costs = {};
     CutStats cut = {};
+    PageStats pages = {};
     std::uint64_t covered_pixels = 0;  // at least by half
     double overlap_mean = 0;           // surfels contributing to a pixel, over pixels with any; with want_overlap
     std::uint64_t fragments = 0;       // contributions of surfels to pixels, all together; with want_overlap
@@ -120,7 +124,7 @@ struct Frame {
 };
 
 /// Not for use from several threads at once. Frames are a pure function of model, scene and settings: same bytes each
-/// time.
+/// time, where they wait for data.
 class Renderer {
   public:
     explicit Renderer(const RendererOptions& options);  // throws DeviceError, UsageError (no such device)
@@ -129,8 +133,9 @@ class Renderer {
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
 
-    /// Uploads; `model` may go away afterwards. The result must not outlive the renderer.
-    std::shared_ptr<const GpuModel> load(const ModelView& model);
+    /// Uploads; `model` may go away afterwards. The result must not outlive the renderer. With `paging`, surfels beyond
+    /// its limit are read as frames need them.
+    std::shared_ptr<const GpuModel> load(const ModelView& model, const Paging& paging = {});
 
     Frame render(const Scene& scene, const CaptureSettings& settings);
 

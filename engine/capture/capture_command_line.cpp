@@ -111,8 +111,8 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, budget, kernel,
-        points_below;
+        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, budget, memory,
+        kernel, points_below;
     bool one_sided = false, two_sided = false;
 };
 
@@ -150,6 +150,9 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     }
     if (!raw.tau.empty()) command.tau = parse_in_range(raw.tau, "--tau", 0, kMostTau, " pixels");
     if (!raw.budget.empty()) command.budget_ms = parse_in_range(raw.budget, "--budget", 0.1, 1e6, " milliseconds");
+    if (!raw.memory.empty())
+        command.memory =
+            static_cast<std::uint64_t>(parse_in_range(raw.memory, "--memory", 1, 1e9, " MB") * 1024 * 1024);
     if (!raw.epsilon_scale.empty())
         command.epsilon_scale = parse_in_range(raw.epsilon_scale, "--epsilon-scale", 0, 100, "");
     if (!raw.prefilter.empty()) command.prefilter = parse_switch(raw.prefilter, "--prefilter");
@@ -279,6 +282,10 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     app.add_flag("--calibrate", command.calibrate,
                  "Measure what drawing takes on this device, and predict and choose between triangles and surfels by "
                  "that; default: a table of software rasterisation, so that pictures repeat");
+    app.add_option("--memory", raw.memory,
+                   "Hold at most so many MB of surfels, 1 to 1e9; the others stay in the model file and are read as "
+                   "frames need them. Default: all are held")
+        ->option_text("MB");
     app.add_option("--stats", raw.stats,
                    "Write times and counts as JSON; the frame is rendered twice, the second timed")
         ->option_text("FILE");

@@ -34,6 +34,7 @@ struct CaptureCommand {
     std::optional<double> tau;        // pixels
     std::optional<double> budget_ms;  // of a frame
     bool calibrate = false;
+    std::optional<std::uint64_t> memory;  // bytes of surfels
     std::optional<Kernel> kernel;
     std::optional<std::uint32_t> antialias;  // samples along a pixel's side
     std::optional<std::filesystem::path> stats;

@@ -16,10 +16,12 @@ struct LoadedScene {
     std::vector<std::string> warnings;
 };
 
-/// Models that a scene names twice are loaded once. Throws DeviceError.
-LoadedScene upload_scene(const PreparedScene& prepared, Renderer& renderer);
+/// Models that a scene names twice are loaded once. Of surfels no more than `memory` bytes are held, shared among the
+/// models by their sizes. Throws DeviceError.
+LoadedScene upload_scene(const PreparedScene& prepared, Renderer& renderer, std::optional<std::uint64_t> memory = {});
 
 /// The two steps in one; meshes are baked with the default options. Throws InputError, SystemError, DeviceError.
-LoadedScene load_scene(const std::filesystem::path& path, Renderer& renderer, const Progress& progress = {});
+LoadedScene load_scene(const std::filesystem::path& path, Renderer& renderer, const Progress& progress = {},
+                       std::optional<std::uint64_t> memory = {});
 
 }  // namespace splice

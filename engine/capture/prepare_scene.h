@@ -23,6 +23,10 @@ class HostModel {
     HostModel(const HostModel&) = delete;
     HostModel& operator=(const HostModel&) = delete;
     const ModelView& view() const { return view_; }
+    /// Lets go of the memory that holds a part of the view's bytes, where they can be read again.
+    void release(std::span<const std::byte> part) const {
+        if (const auto* file = std::get_if<ModelFile>(&source_)) file->release(part);
+    }
     /// From a mesh or a shape, so that it can be baked again in another way.
     bool baked() const { return std::holds_alternative<Model>(source_); }
 

@@ -7,6 +7,7 @@
 #include "engine/scene/cut_store.h"
 #include "engine/scene/frame_budget.h"
 #include "engine/scene/gpu_model.h"
+#include "engine/scene/settle_pages.h"
 #include "engine/vulkan/transfer.h"
 #include "preprocess/model_format/error.h"
 
@@ -165,6 +166,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     auto [tau, draws] = select(scene, settings, camera, list_options, frame.width, frame.height);
     tau /= antialias;
     const auto selected = Clock::now();
+    const PageStats pages = settle_pages(draws, settings.wait_for_data);
     cut_store.gather(draws, view == View::kLevels);
     if (list_options.merge_patches) cut_store.gather_triangles(draws);
     const auto gathered = Clock::now();
@@ -191,6 +193,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         if (stats->drawn_by.empty() || share.surfels > stats->drawn_by.front().surfels) stats->backend = share.backend;
         stats->drawn_by.push_back({share.backend, share.surfels});
     }
+    stats->pages = pages;
     stats->antialias = antialias;
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;
@@ -215,8 +218,8 @@ Renderer::Renderer(const RendererOptions& options) : implementation_(std::make_u
 Renderer::Renderer(gpu::Device& device) : implementation_(std::make_unique<Implementation>(device)) {}
 Renderer::~Renderer() = default;
 
-std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model) {
-    return std::make_shared<const GpuModel>(implementation_->device, model);
+std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model, const Paging& paging) {
+    return std::make_shared<const GpuModel>(implementation_->device, model, paging);
 }
 
 Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {

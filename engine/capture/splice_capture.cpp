@@ -20,8 +20,9 @@ using namespace splice;
 
 LoadedScene load(const CaptureCommand& command, Renderer& renderer) {
     StageDisplay display(command.quiet);
-    LoadedScene loaded = load_scene(command.input, renderer,
-                                    [&](std::string_view stage, double fraction) { display.update(stage, fraction); });
+    LoadedScene loaded = load_scene(
+        command.input, renderer, [&](std::string_view stage, double fraction) { display.update(stage, fraction); },
+        command.memory);
     display.finish();
     if (!command.quiet)
         for (const std::string& warning : loaded.warnings)

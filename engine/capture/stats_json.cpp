@@ -32,6 +32,15 @@ nlohmann::ordered_json json_of(const CutStats& cut) {
     return json;
 }
 
+nlohmann::ordered_json json_of(const PageStats& pages) {
+    nlohmann::ordered_json json;
+    json["limit_bytes"] = pages.limit_bytes;
+    json["resident_bytes"] = pages.resident_bytes;
+    json["blocks_read"] = pages.blocks_read;
+    json["missing_surfels"] = pages.missing_surfels;
+    return json;
+}
+
 nlohmann::ordered_json json_of(const FrameStats& stats) {
     nlohmann::ordered_json json;
     json["device"] = stats.device;
@@ -51,6 +60,7 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
     json["costs_us"] = costs_json(stats.costs);
     json["costs_us"]["calibrated"] = stats.costs != kSoftwareCosts;
     if (stats.cut.tau > 0 || stats.cut.budget_ms) json["cut"] = json_of(stats.cut);
+    if (stats.pages.limit_bytes != 0) json["pages"] = json_of(stats.pages);
     json["covered_pixels"] = stats.covered_pixels;
     json["overlap_mean"] = stats.overlap_mean;
     return json;

@@ -1,5 +1,7 @@
 #include "engine/passes/frame_data.h"
 
+#include "engine/scene/surfel_store.h"
+
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -129,6 +131,7 @@ InstanceConstants instance_constants(const InstanceDraws& draws, double epsilon_
     constants.scale = static_cast<float>(draws.scale);
     constants.epsilon_scale = static_cast<float>(epsilon_scale);
     constants.flags = draws.two_sided ? kInstanceTwoSided : 0u;
+    if (draws.surfels != nullptr && draws.surfels->is_packed()) constants.flags |= kInstancePacked;
     constants.first_patch = draws.first_patch;
     return constants;
 }

@@ -50,6 +50,7 @@ enum InstanceFlags : std::uint32_t {
     kInstanceLastSegment = 1u << 2,
     kInstanceTiled = 1u << 3,
     kInstanceListed = 1u << 4,
+    kInstancePacked = 1u << 5,
 };
 
 struct InstanceConstants {

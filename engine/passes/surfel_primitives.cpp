@@ -15,20 +15,21 @@ constexpr std::uint32_t kQuadVertices = 4;
 }  // namespace
 
 void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads) {
-    options.vertex_bindings = {
-        {0, sizeof(format::Surfel), quads ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX}};
-    options.vertex_attributes = {
-        {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(format::Surfel, position)},
-        {1, 0, VK_FORMAT_R16_SFLOAT, offsetof(format::Surfel, radius)},
-        {7, 0, VK_FORMAT_R16_UINT, offsetof(format::Surfel, extent)},
-        {2, 0, VK_FORMAT_R16G16_SNORM, offsetof(format::Surfel, normal)},
-        {3, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(format::Surfel, colour)},
-        {4, 0, VK_FORMAT_R8_SNORM, offsetof(format::Surfel, shading_bend)},
-        {6, 0, VK_FORMAT_R8G8B8A8_SNORM, offsetof(format::Surfel, shading_bend) + 1},
-        {5, 0, VK_FORMAT_R32_UINT, offsetof(format::Surfel, patch)},
-    };
+    const VkVertexInputRate rate = quads ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX;
+    // Both halves of a record; of a packed one, twice the same. Strides come with the buffers.
+    options.vertex_bindings = {{0, 0, rate}, {1, 0, rate}};
+    options.vertex_attributes = {{0, 0, VK_FORMAT_R32G32B32A32_UINT, 0}, {1, 1, VK_FORMAT_R32G32B32A32_UINT, 0}};
+    options.dynamic_states.push_back(VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE);
     options.topology = quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
     options.vertex.constants[0] = quads ? 1u : 0u;
+}
+
+void bind_surfels(VkCommandBuffer commands, VkBuffer records, std::uint64_t first, std::uint64_t stride) {
+    const std::array buffers{records, records};
+    const std::array<VkDeviceSize, 2> offsets{first * stride, first * stride + stride - sizeof(format::PackedSurfel)},
+        strides{stride, stride};
+    vkCmdBindVertexBuffers2(commands, 0, static_cast<std::uint32_t>(buffers.size()), buffers.data(), offsets.data(),
+                            nullptr, strides.data());
 }
 
 SurfelPrimitives::SurfelPrimitives(gpu::Device& device, const FrameData& data)
@@ -60,13 +61,12 @@ void SurfelPrimitives::draw_ranges(const graph::PassContext& context, const Fram
                       }));
     const VkDescriptorSet frame_set = data_.set();
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0, 1, &frame_set, 0, nullptr);
-    const InstanceConstants constants = instance_constants(instance, settings.epsilon_scale);
-    vkCmdPushConstants(commands, layout_.handle(), kConstantStages, 0, sizeof constants, &constants);
-    const VkBuffer surfels = instance.surfels->buffer().handle();
+    InstanceConstants constants = instance_constants(instance, settings.epsilon_scale);
     for (const DrawRange& range : ranges) {
+        constants.first_surfel = static_cast<std::uint32_t>(range.first);
+        vkCmdPushConstants(commands, layout_.handle(), kConstantStages, 0, sizeof constants, &constants);
         // Whole ranges by offset, so that vertex numbers start at 0 in both kinds and 32 bits suffice.
-        const VkDeviceSize offset = range.first * sizeof(format::Surfel);
-        vkCmdBindVertexBuffers(commands, 0, 1, &surfels, &offset);
+        bind_surfels(commands, instance.surfels->buffer().handle(), range.first, instance.surfels->stride());
         if (quads) {
             vkCmdDraw(commands, kQuadVertices, range.count, 0, 0);
         } else {

@@ -15,6 +15,9 @@ namespace splice {
 /// Vertex input, topology and constant 0 of surfel_vertex.glsl.
 void add_surfel_input(gpu::GraphicsPipelineOptions& options, bool quads);
 
+/// Of a buffer with `stride` bytes a record: those from `first` on, as that vertex input takes them.
+void bind_surfels(VkCommandBuffer commands, VkBuffer records, std::uint64_t first, std::uint64_t stride);
+
 class SurfelPrimitives {
   public:
     SurfelPrimitives(gpu::Device& device, const FrameData& data);

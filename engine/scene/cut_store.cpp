@@ -21,7 +21,8 @@ constexpr std::size_t kFewDraws = 16;
 
 // A run and where its records go.
 struct Piece {
-    std::span<const format::Surfel> records;
+    const GpuModel* model;
+    std::uint64_t first, count;
     std::uint64_t place;
     std::uint32_t level;
     bool inner;
@@ -36,8 +37,13 @@ class Gathering {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces_.size(), 256), [&](const auto& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const Piece& piece = pieces_[i];
-                const auto copied = records.subspan(piece.place, piece.records.size());
-                std::copy(piece.records.begin(), piece.records.end(), copied.begin());
+                const auto copied = records.subspan(piece.place, piece.count);
+                if (piece.inner) {
+                    const auto ellipses = piece.model->ellipses().subspan(piece.first, piece.count);
+                    std::copy(ellipses.begin(), ellipses.end(), copied.begin());
+                } else {
+                    piece.model->copy_surfels(piece.first, copied);
+                }
                 if (levels_ && piece.inner)
                     for (format::Surfel& record : copied)
                         record.patch = static_cast<std::uint16_t>(piece.level);
@@ -61,17 +67,14 @@ class Gathering {
   private:
     void add_runs(const InstanceDraws& instance, bool points, std::vector<DrawRange>& in_place,
                   std::vector<DrawRange>& gathered) {
-        const std::span<const format::Surfel> surfels = instance.model->host_surfels();
-        const std::span<const format::Surfel> ellipses = instance.model->ellipses();
         DrawRange range{.first = count_};
         for (const CutRun& run : instance.cut.runs) {
             if (run.fits_point != points) continue;
-            if (!run.inner && run.count >= kInPlace) {
+            if (!run.inner && run.count >= kInPlace && instance.model->pager() == nullptr) {
                 in_place.push_back({.first = run.first, .count = run.count});
                 continue;
             }
-            pieces_.push_back(
-                {(run.inner ? ellipses : surfels).subspan(run.first, run.count), count_, run.level, run.inner});
+            pieces_.push_back({instance.model, run.first, run.count, count_, run.level, run.inner});
             count_ += run.count;
             range.count += run.count;
         }
@@ -93,7 +96,8 @@ void CutStore::gather(DrawList& draws, bool levels) {
     if (gathering.count() == 0) return;
     if (!store_ || store_->capacity() < gathering.count()) {
         store_.reset();
-        store_.emplace(device_, gathering.count() + gathering.count() / 2, gpu::MemoryUse::upload, "cut");
+        store_.emplace(device_, gathering.count() + gathering.count() / 2, SurfelRecords::kPlain,
+                       gpu::MemoryUse::upload, "cut");
     }
     gathering.copy_to(store_->mapped());
     for (InstanceDraws& instance : added) {

@@ -51,8 +51,8 @@ class Culler {
 
     // Whether surfels come from the point tree; if not, from the patches.
     bool cuts() const {
-        return options_.tau > 0 && options_.draw_surfels && !options_.surfels_as_triangles &&
-               !draws_.model->hierarchy().empty();
+        return (options_.tau > 0 || draws_.model->pager() != nullptr) && options_.draw_surfels &&
+               !options_.surfels_as_triangles && !draws_.model->hierarchy().empty();
     }
 
     void cut() {

@@ -7,7 +7,7 @@
 // major half axis. shaders/glsl/include/surfel_frame.glsl decodes the same.
 #pragma once
 
-#include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <cstdint>
 

@@ -2,11 +2,13 @@
 
 #include "engine/scene/ellipse_record.h"
 #include "engine/vulkan/transfer.h"
+#include "preprocess/model_format/packed_surfel.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 namespace splice {
 
@@ -48,19 +50,35 @@ gpu::Image create_texture(gpu::Device& device, const format::Texture& texture, s
     return image;
 }
 
+std::span<const std::byte> records_of(const ModelView& model) {
+    return model.is_packed() ? std::as_bytes(model.packed_surfels) : std::as_bytes(model.surfels);
+}
+
+// What records hold of it. Packed ones need not be read for that.
+std::uint16_t patch_of(const ModelView& model, std::uint64_t surfel) {
+    return model.is_packed() ? static_cast<std::uint16_t>(surfel / kPackedBlock) : model.surfels[surfel].patch;
+}
+
 }  // namespace
 
 gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device) {
     return {device, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT, 1}}};
 }
 
-GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
+GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging)
+    : GpuModel(device, model, paging, unpack_point_tree(model.point_tree)) {}
+
+GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
+                   const std::vector<format::PointNode>& tree)
     : info_(*model.info),
       patches_(model.patches.begin(), model.patches.end()),
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
-      hierarchy_(point_hierarchy(model.point_tree, model.patches, model.info->max_surfel_radius)),
-      surfels_(device, model.surfels.size(), gpu::MemoryUse::device, "surfels"),
+      hierarchy_(point_hierarchy(tree, model.patches, model.info->max_surfel_radius)),
+      surfel_count_(model.surfel_count()),
+      paged_(paging.owner && !hierarchy_.empty() && records_of(model).size() > paging.limit),
+      surfels_(device, paged_ ? 0 : model.surfel_count(),
+               model.is_packed() ? SurfelRecords::kPacked : SurfelRecords::kPlain, gpu::MemoryUse::device, "surfels"),
       pool_(device) {
     const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes) {
         gpu::Buffer result(device, {.size = bytes.size(), .usage = usage, .name = name});
@@ -69,18 +87,20 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model)
     };
     vertices_ = buffer("vertices", VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, std::as_bytes(model.vertices));
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
-    gpu::upload(device, surfels_.buffer(), std::as_bytes(model.surfels));
-    if (!hierarchy_.empty() && surfels_.mapped().empty())
-        surfel_copy_.assign(model.surfels.begin(), model.surfels.end());
-    make_ellipses(model);
+    const auto records = paged_ ? std::span<const std::byte>() : records_of(model);
+    gpu::upload(device, surfels_.buffer(), records);
+    if (!paged_ && !hierarchy_.empty() && surfels_.buffer().mapped().empty())
+        record_copy_.assign(records.begin(), records.end());
+    make_ellipses(model, tree);
+    if (paged_) page(model, paging);
     create_materials(device, model);
 }
 
-void GpuModel::make_ellipses(const ModelView& model) {
-    ellipses_.resize(model.point_tree.size());
+void GpuModel::make_ellipses(const ModelView& model, const std::vector<format::PointNode>& tree) {
+    ellipses_.resize(tree.size());
     tbb::parallel_for(std::size_t{0}, ellipses_.size(), [&](std::size_t i) {
-        const format::PointNode& node = model.point_tree[i];
-        ellipses_[i] = ellipse_record(node, model.surfels[node.first_surfel].patch);
+        const format::PointNode& node = tree[i];
+        ellipses_[i] = ellipse_record(node, patch_of(model, node.first_surfel));
     });
 }
 
@@ -100,8 +120,58 @@ void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
     }
 }
 
-std::span<const format::Surfel> GpuModel::host_surfels() const {
-    return surfel_copy_.empty() ? surfels_.mapped() : std::span<const format::Surfel>(surfel_copy_);
+void GpuModel::page(const ModelView& model, const Paging& paging) {
+    std::vector<std::uint32_t> level(hierarchy_.nodes.size(), 1);
+    for (std::uint32_t i = 0; i < level.size(); ++i) {
+        const std::uint32_t children = hierarchy_.details[i].child_count;
+        if (children == 0) leaves_.push_back({i, level[i]});
+        for (std::uint32_t child = 0; child < children; ++child)
+            level[hierarchy_.nodes[i].first_child + child] = level[i] + 1;
+    }
+    std::ranges::sort(leaves_, {}, [&](const TreeLeaf& leaf) { return hierarchy_.nodes[leaf.node].first_surfel; });
+    const std::span<const std::byte> records = records_of(model);
+    if (paging.release) paging.release(records);
+    pager_ = std::make_unique<SurfelPager>(records.size(), paging.limit,
+                                           [records, paging](std::uint64_t first, std::span<std::byte> bytes) {
+                                               const auto source = records.subspan(first, bytes.size());
+                                               std::ranges::copy(source, bytes.begin());
+                                               if (paging.release) paging.release(source);
+                                           });
+}
+
+void GpuModel::copy_surfels(std::uint64_t first, std::span<format::Surfel> copies) const {
+    constexpr std::uint64_t kBlock = SurfelPager::kBlockBytes;
+    static_assert(kBlock % sizeof(format::Surfel) == 0);
+    if (pager_) {
+        const std::uint64_t stride = surfels_.stride();
+        while (!copies.empty()) {
+            const std::uint64_t at = first * stride, block = at / kBlock;
+            const std::uint64_t count = std::min<std::uint64_t>(copies.size(), ((block + 1) * kBlock - at) / stride);
+            const auto records = pager_->find(static_cast<std::uint32_t>(block)).subspan(at % kBlock, count * stride);
+            unpack_surfels(records, first, copies.first(count));
+            copies = copies.subspan(count);
+            first += count;
+        }
+        return;
+    }
+    const std::span<const std::byte> records =
+        record_copy_.empty() ? std::span<const std::byte>(surfels_.buffer().mapped()) : record_copy_;
+    unpack_surfels(records.subspan(first * surfels_.stride(), copies.size() * surfels_.stride()), first, copies);
+}
+
+void GpuModel::unpack_surfels(std::span<const std::byte> records, std::uint64_t first,
+                              std::span<format::Surfel> copies) const {
+    const std::byte* at = records.data();
+    if (!surfels_.is_packed()) {
+        std::memcpy(copies.data(), at, copies.size_bytes());
+        return;
+    }
+    for (format::Surfel& copy : copies) {
+        format::PackedSurfel packed;
+        std::memcpy(&packed, at, sizeof packed);
+        copy = unpack_surfel(packed, static_cast<std::uint16_t>(first++ / kPackedBlock));
+        at += sizeof packed;
+    }
 }
 
 Box GpuModel::bounds() const {

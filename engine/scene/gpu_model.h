@@ -4,6 +4,8 @@
 
 #include "engine/scene/camera.h"
 #include "engine/scene/lod_cut.h"
+#include "engine/scene/paging.h"
+#include "engine/scene/surfel_pager.h"
 #include "engine/scene/surfel_store.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
@@ -11,6 +13,7 @@
 #include "engine/vulkan/image.h"
 #include "preprocess/model_format/model.h"
 
+#include <memory>
 #include <vector>
 
 namespace splice {
@@ -18,10 +21,19 @@ namespace splice {
 /// Set 1 of the triangle pass, one a material: binding 0 the diffuse texture, white where there is no image.
 gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device);
 
+/// A leaf of the point tree.
+struct TreeLeaf {
+    std::uint32_t node;
+    std::uint32_t level;  // depth in the tree, counted from 1
+};
+
 class GpuModel {
   public:
     /// The view may go away afterwards, the device must outlive the model. Throws DeviceError.
-    GpuModel(gpu::Device& device, const ModelView& model);
+    explicit GpuModel(gpu::Device& device, const ModelView& model) : GpuModel(device, model, {}) {}
+    /// Surfels that do not fit into the limit stay in the view's memory and come through pager(), if the model has a
+    /// point tree to draw in their place.
+    GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging);
 
     const format::ModelInfo& info() const { return info_; }
     bool two_sided() const { return (info_.flags & format::kTwoSided) != 0; }
@@ -31,8 +43,19 @@ class GpuModel {
     const gpu::Buffer& vertices() const { return vertices_; }
     const gpu::Buffer& indices() const { return indices_; }
     const SurfelStore& surfels() const { return surfels_; }
-    /// The records as the host may read them: of models with a point tree.
-    std::span<const format::Surfel> host_surfels() const;
+    /// Null where all surfels are in surfels(); else those are none, and frames are cuts.
+    SurfelPager* pager() const { return pager_.get(); }
+    std::uint64_t surfel_count() const { return surfel_count_; }
+    /// Bytes a surfel, in surfels() and in the pager.
+    std::uint64_t surfel_bytes() const { return surfels_.stride(); }
+    /// Of a paged model: the leaves of the hierarchy, in the order of their surfels.
+    std::span<const TreeLeaf> leaves() const { return leaves_; }
+    /// Records as they lie in the pager, unpacked; `first`: the number of the first of them.
+    void unpack_surfels(std::span<const std::byte> records, std::uint64_t first,
+                        std::span<format::Surfel> copies) const;
+    /// Surfels from `first` on, as many as `copies` holds, unpacked; of models with a point tree.
+    /// Of a paged one, those that settle_pages() left in a cut.
+    void copy_surfels(std::uint64_t first, std::span<format::Surfel> copies) const;
     /// Empty where the model has no point tree.
     const PointHierarchy& hierarchy() const { return hierarchy_; }
     /// A record (ellipse_record.h) for each node of the hierarchy.
@@ -42,7 +65,10 @@ class GpuModel {
     Box bounds() const;
 
   private:
-    void make_ellipses(const ModelView& model);
+    GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
+             const std::vector<format::PointNode>& tree);
+    void make_ellipses(const ModelView& model, const std::vector<format::PointNode>& tree);
+    void page(const ModelView& model, const Paging& paging);
     void create_materials(gpu::Device& device, const ModelView& model);
 
     format::ModelInfo info_{};
@@ -52,13 +78,17 @@ class GpuModel {
     PointHierarchy hierarchy_;
     std::vector<format::Surfel> ellipses_;
     gpu::Buffer vertices_, indices_;
+    std::uint64_t surfel_count_;
+    bool paged_;
     SurfelStore surfels_;
-    std::vector<format::Surfel> surfel_copy_;  // where the host cannot read the device's
-    std::vector<gpu::Image> images_;           // the last is a white texel
+    std::vector<TreeLeaf> leaves_;
+    std::vector<std::byte> record_copy_;  // where the host cannot read the device's
+    std::vector<gpu::Image> images_;      // the last is a white texel
     gpu::UniqueSampler sampler_;
     gpu::DescriptorSetLayout set_layout_;
     gpu::DescriptorPool pool_;
     std::vector<VkDescriptorSet> material_sets_;
+    std::unique_ptr<SurfelPager> pager_;
 };
 
 }  // namespace splice

@@ -8,7 +8,7 @@
 // pass: nothing is drawn farther than `tau` from what it stands for. At 1 a pixel holds an ellipse whole.
 #pragma once
 
-#include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <glm/glm.hpp>
 

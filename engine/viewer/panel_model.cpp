@@ -133,7 +133,7 @@ void draw_picked_section(PanelContext& context) {
     row(surfel ? "Surfel" : "Triangle", grouped(hit.element));
     row("Place", three(hit.point.x, hit.point.y, hit.point.z));
     if (surfel) {
-        draw_surfel(model.surfels[hit.element]);
+        draw_surfel(model.surfel(hit.element));
         return;
     }
     row("Normal", three(hit.normal.x, hit.normal.y, hit.normal.z));

@@ -90,7 +90,7 @@ class ModelPicker {
 
     void visit_surfels(std::uint32_t index, const format::Patch& patch) {
         for (std::uint64_t i = patch.first_surfel; i < patch.first_surfel + patch.surfel_count; ++i) {
-            const format::Surfel& surfel = model_.surfels[i];
+            const format::Surfel surfel = model_.surfel(i);
             const std::array<float, 3> n = decode_octahedral(surfel.normal);
             const glm::dvec3 normal(n[0], n[1], n[2]), centre = vector_of(surfel.position);
             const double facing = glm::dot(normal, ray_.direction);

@@ -202,11 +202,11 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
         scene->bakeable = scene->bakeable || model.baked();
         scene->patches += view.patches.size();
         scene->triangles += view.info->drawn_triangles;
-        scene->surfels += view.surfels.size();
+        scene->surfels += view.surfel_count();
         scene->source_triangles += view.info->source_triangles;
         if (std::exchange(counted[&model], true)) continue;
         scene->bytes += view.vertices.size_bytes() + view.indices.size_bytes() + view.surfels.size_bytes() +
-                        view.patches.size_bytes() + view.texels.size_bytes();
+                        view.packed_surfels.size_bytes() + view.patches.size_bytes() + view.texels.size_bytes();
     }
     for (const std::string& warning : scene->loaded.warnings)
         report(warning, false);

@@ -5,6 +5,8 @@
 #include "preprocess/lod/point_octree.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/packed_surfel.h"
+#include "preprocess/model_format/point_node.h"
 #include "preprocess/model_format/surfel_extent.h"
 
 #include <tbb/parallel_for.h>
@@ -13,10 +15,6 @@
 
 namespace splice {
 namespace {
-
-// The depth offset, in radii: what a mesh's surfels have on average, whose radius is 0.8 of their spacing before it is
-// shrunk to what they must cover.
-constexpr float kEpsilon = 1.5f;
 
 Vec3f stored_normal(const format::Surfel& surfel) {
     const auto normal = decode_octahedral(surfel.normal);
@@ -30,10 +28,10 @@ format::Surfel make_surfel(const Vec3f& position, const CloudDisk& disk, std::ui
         surfel.colour[axis] = static_cast<std::uint8_t>(colour >> (8 * axis));
     }
     surfel.radius = half_at_least(disk.radius);
-    const float radius = float_from_half(surfel.radius);
-    surfel.extent = encode_extent({disk.above, disk.below, kEpsilon * radius + disk.above + disk.below}, radius);
+    surfel.extent = encode_extent({disk.above, disk.below, 0}, float_from_half(surfel.radius));
     surfel.normal = encode_octahedral(disk.normal.x(), disk.normal.y(), disk.normal.z());
-    return surfel;
+    // What packing changes is changed before anything is bounded by it.
+    return unpack_surfel(pack_surfel(surfel), 0);
 }
 
 class Assembler {
@@ -46,7 +44,7 @@ class Assembler {
             const std::uint32_t colour = cloud_.colours.empty() ? kWhite : cloud_.colours[point];
             model_.surfels[point] = make_surfel(cloud_.positions[point], surface_.disks[point], colour);
         });
-        model_.point_tree = build_point_octree(model_.surfels);
+        nodes_ = build_point_octree(model_.surfels);
         cut_patches();
         bounds_.resize(model_.patches.size());
         tbb::parallel_for(std::size_t{0}, model_.patches.size(), [&](std::size_t patch) { measure_patch(patch); });
@@ -54,6 +52,7 @@ class Assembler {
         model_.lods.resize(model_.patches.size());
         model_.materials.push_back({kWhite, format::kNoTexture});
         add_info();
+        pack();
         return std::move(model_);
     }
 
@@ -62,11 +61,11 @@ class Assembler {
     void cut_patches() { cut_patches(0); }
 
     void cut_patches(std::uint32_t index) {
-        const format::PointNode& node = model_.point_tree[index];
+        const format::PointNode& node = nodes_[index];
         if (node.surfel_count <= kCloudPatchPoints) return add_patch(node);
         const format::PointNode* before = nullptr;
         for (std::uint32_t child = 0; child < node.child_count; ++child) {
-            const format::PointNode& part = model_.point_tree[node.first_child + child];
+            const format::PointNode& part = nodes_[node.first_child + child];
             if (part.surfel_count > kCloudPatchPoints) {
                 cut_patches(node.first_child + child);
                 before = nullptr;
@@ -130,18 +129,34 @@ class Assembler {
         if (!cloud_.colours.empty()) info.flags |= format::kHasColours;
         info.lod_levels = 1;
         info.source_vertices = cloud_.positions.size();
-        std::vector<float> radii(model_.surfels.size());
-        tbb::parallel_for(std::size_t{0}, radii.size(),
-                          [&](std::size_t i) { radii[i] = float_from_half(model_.surfels[i].radius); });
-        const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-        std::nth_element(radii.begin(), middle, radii.end());
-        info.median_surfel_radius = *middle;
+        info.median_surfel_radius = median_radius();
         for (const format::Patch& patch : model_.patches)
             info.max_surfel_radius = std::max(info.max_surfel_radius, patch.max_surfel_radius);
     }
 
+    void pack() {
+        model_.point_tree = pack_point_tree(nodes_);
+        model_.packed_surfels.resize(model_.surfels.size());
+        tbb::parallel_for(std::size_t{0}, model_.surfels.size(),
+                          [&](std::size_t i) { model_.packed_surfels[i] = pack_surfel(model_.surfels[i]); });
+        std::vector<format::Surfel>().swap(model_.surfels);
+    }
+
+    // Halves above 0 are ordered as their bits are, so counting them sorts them.
+    float median_radius() const {
+        std::vector<std::uint64_t> counts(std::size_t{1} << 16);
+        for (const format::Surfel& surfel : model_.surfels)
+            ++counts[surfel.radius];
+        std::uint64_t smaller = 0;
+        std::uint32_t radius = 0;
+        while (smaller + counts[radius] <= model_.surfels.size() / 2)
+            smaller += counts[radius++];
+        return float_from_half(static_cast<std::uint16_t>(radius));
+    }
+
     const UnitCloud& cloud_;
     const CloudSurface& surface_;
+    std::vector<format::PointNode> nodes_;
     std::vector<Box> bounds_;
     Model model_;
 };

@@ -38,7 +38,7 @@ class Assembler {
         add_triangles();
         add_patches();
         add_surfels();
-        model_.point_tree = build_patch_point_octree(model_.surfels, model_.patches, model_.octree);
+        model_.point_tree = pack_point_tree(build_patch_point_octree(model_.surfels, model_.patches, model_.octree));
         add_merge_tree();
         add_materials();
         add_info();

@@ -98,7 +98,7 @@ Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats&
     }
     Model model = timed(progress, "assemble", stats.seconds_assemble, [&] { return assemble_cloud(unit, surface); });
     stats.cluster.surfel_patches = model.patches.size();
-    stats.surfel.surfels = model.surfels.size();
+    stats.surfel.surfels = model.packed_surfels.size();
     stats.seconds_total += total.seconds();
     return model;
 }

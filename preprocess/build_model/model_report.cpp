@@ -57,7 +57,7 @@ std::string model_report_json(const ModelFile& file, const std::string& name) {
     json["two_sided"] = (info.flags & format::kTwoSided) != 0;
     json["has_colours"] = (info.flags & format::kHasColours) != 0;
     json["has_uvs"] = (info.flags & format::kHasUvs) != 0;
-    json["drawn"] = {{"triangles", info.drawn_triangles}, {"surfels", view.surfels.size()}};
+    json["drawn"] = {{"triangles", info.drawn_triangles}, {"surfels", view.surfel_count()}};
     json["patches"] = {{"triangle", totals.triangle_patches},
                        {"surfel", totals.surfel_patches},
                        {"triangle_area", totals.triangle_area},
@@ -106,8 +106,8 @@ std::string model_report_text(const ModelFile& file, const std::string& name) {
                                                      : ", vertex colours")
          << ((info.flags & format::kHasUvs) != 0 ? ", texture coordinates" : "") << '\n';
     text << "drawn       " << info.drawn_triangles << " triangles in " << totals.triangle_patches << " patches, "
-         << view.surfels.size() << " surfels in " << totals.surfel_patches << " patches\n";
-    if (!view.surfels.empty())
+         << view.surfel_count() << " surfels in " << totals.surfel_patches << " patches\n";
+    if (view.surfel_count() != 0)
         text << "radius      median " << info.median_surfel_radius << ", largest " << info.max_surfel_radius
              << " of the longest side\n";
     for (std::size_t i = 0; i < totals.levels.size(); ++i)

@@ -26,7 +26,7 @@ BakeResult write(const Model& model, const std::filesystem::path& path) {
     result.file_bytes = write_model(view_of(model), path);
     result.seconds_write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     result.drawn_triangles = model.info.drawn_triangles;
-    result.surfels = model.surfels.size();
+    result.surfels = view_of(model).surfel_count();
     result.peak_rss_bytes = peak_rss_bytes();
     return result;
 }

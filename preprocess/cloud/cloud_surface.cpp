@@ -1,5 +1,6 @@
 #include "preprocess/cloud/cloud_surface.h"
 
+#include "preprocess/cloud/least_spread.h"
 #include "preprocess/cloud/neighbour_search.h"
 #include "preprocess/cloud/voronoi_cell.h"
 #include "preprocess/model_format/tangent_frame.h"
@@ -7,8 +8,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -35,6 +34,7 @@ constexpr float kIsolated = 4;
 // this share of all are.
 constexpr float kLargest = 3;
 constexpr double kLargestShare = 0.99;
+constexpr std::size_t kSample = 1 << 17;  // about this many tell what is usual
 
 // A disk at a border has nothing to reach on one side: it goes no farther than this neighbour.
 constexpr std::size_t kBorderNeighbour = 4;
@@ -42,6 +42,15 @@ constexpr std::size_t kBorderNeighbour = 4;
 struct Plane {
     Vec3f normal;
     bool is_line = false;
+};
+
+// A point's neighbours, the nearest first.
+struct Vicinity {
+    std::size_t count = 0;
+    std::array<std::uint32_t, NeighbourSearch::kMostNeighbours> index;
+    std::array<Vec3f, NeighbourSearch::kMostNeighbours> offset;
+
+    std::span<const Vec3f> offsets(std::size_t most) const { return std::span(offset).first(std::min(most, count)); }
 };
 
 struct FoundPoint {
@@ -79,108 +88,135 @@ class Estimator {
   private:
     void estimate_blocks(const tbb::blocked_range<std::size_t>& blocks) {
         NeighbourSearch::Lists lists, more;
+        Vicinity vicinity;
         std::uint64_t borders = 0, estimated = 0;
         for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
             search_.find(block, std::max(k_, static_cast<unsigned>(kStoredNeighbours)), lists);
             const std::size_t first = block * NeighbourSearch::kBlock;
+            // Points whose nearest neighbours do not suffice, which are asked for again together.
+            std::uint32_t insufficient = 0;
             for (std::size_t q = 0; q < NeighbourSearch::kBlock && first + q < points_.size(); ++q) {
-                const std::size_t point = first + q;
-                std::span<const Neighbour> found = usable(lists.of(q));
-                store(point, found);
-                Plane plane;
-                if (!normals_.empty() && normals_[point] != Vec3f::Zero()) {
-                    plane.normal = normals_[point];
-                } else {
-                    plane = fit_plane(point, found.first(std::min<std::size_t>(found.size(), k_)));
-                    if (plane.is_line) {
-                        found = ask_more(block, q, more);
-                        plane = fit_plane(point, found);
-                    }
+                look_around(first + q, lists.of(q), vicinity);
+                store(first + q, vicinity);
+                bool enough = true;
+                Vec3f normal = given_normal(first + q);
+                if (normal == Vec3f::Zero()) {
+                    const Plane plane = fit_plane(vicinity.offsets(k_));
+                    normal = plane.normal;
+                    enough = !plane.is_line;
                     ++estimated;
                 }
-                FoundPoint result = cover_cell(point, plane.normal, found);
-                // A gap as wide as the nearest neighbours are far may have a far side.
-                if (result.border && found.size() <= k_)
-                    result = cover_cell(point, plane.normal, ask_more(block, q, more));
-                surface_.disks[point] = result.disk;
-                borders += result.border;
+                if (enough) {
+                    const FoundPoint result = cover_cell(normal, vicinity);
+                    surface_.disks[first + q] = result.disk;
+                    // A gap as wide as the nearest neighbours are far may have a far side.
+                    enough = !result.border;
+                }
+                insufficient |= static_cast<std::uint32_t>(!enough) << q;
+            }
+            if (insufficient == 0) continue;
+            search_.find(block, kMoreNeighbours * k_, more, insufficient);
+            for (; insufficient != 0; insufficient &= insufficient - 1) {
+                const auto q = static_cast<std::size_t>(std::countr_zero(insufficient));
+                borders += estimate_from_more(first + q, lists.of(q), more.of(q), vicinity);
             }
         }
         border_points_ += borders;
         estimated_normals_ += estimated;
     }
 
-    std::span<const Neighbour> ask_more(std::size_t block, std::size_t q, NeighbourSearch::Lists& more) const {
-        search_.find(block, kMoreNeighbours * k_, more, 1u << q);
-        return usable(more.of(q));
+    /// True if the point is at a border.
+    bool estimate_from_more(std::size_t point, std::span<const Neighbour> nearest, std::span<const Neighbour> more,
+                            Vicinity& vicinity) {
+        Vec3f normal = given_normal(point);
+        if (normal == Vec3f::Zero()) {
+            look_around(point, nearest, vicinity);
+            const Plane plane = fit_plane(vicinity.offsets(k_));
+            normal = plane.normal;
+            look_around(point, more, vicinity);
+            if (plane.is_line) normal = fit_plane(vicinity.offsets(more.size())).normal;
+        } else {
+            look_around(point, more, vicinity);
+        }
+        const FoundPoint result = cover_cell(normal, vicinity);
+        surface_.disks[point] = result.disk;
+        return result.border;
     }
 
-    static std::span<const Neighbour> usable(std::span<const Neighbour> list) {
-        while (!list.empty() && list.back() == kNoNeighbour)
-            list = list.first(list.size() - 1);
-        return list;
+    Vec3f given_normal(std::size_t point) const { return normals_.empty() ? Vec3f(Vec3f::Zero()) : normals_[point]; }
+
+    void look_around(std::size_t point, std::span<const Neighbour> list, Vicinity& vicinity) const {
+        vicinity.count = 0;
+        for (const Neighbour neighbour : list) {
+            if (neighbour == kNoNeighbour) break;
+            vicinity.index[vicinity.count] = index_of(neighbour);
+            vicinity.offset[vicinity.count++] = points_[index_of(neighbour)] - points_[point];
+        }
     }
 
-    void store(std::size_t point, std::span<const Neighbour> found) {
+    void store(std::size_t point, const Vicinity& vicinity) {
         StoredNeighbours& stored = surface_.neighbours[point];
         stored.fill(static_cast<std::uint32_t>(point));
-        for (std::size_t i = 0; i < stored.size() && !found.empty(); ++i)
-            stored[i] = index_of(found[std::min(i, found.size() - 1)]);
+        for (std::size_t i = 0; i < stored.size() && vicinity.count != 0; ++i)
+            stored[i] = vicinity.index[std::min(i, vicinity.count - 1)];
         reach_[point] = (points_[stored.back()] - points_[point]).norm();
     }
 
     // The direction in which point and neighbours spread least.
-    Plane fit_plane(std::size_t point, std::span<const Neighbour> found) const {
-        Vec3d sum = Vec3d::Zero();
-        Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-        for (const Neighbour neighbour : found) {
-            const Vec3d offset = (points_[index_of(neighbour)] - points_[point]).cast<double>();
-            sum += offset;
-            squares.noalias() += offset * offset.transpose();
+    static Plane fit_plane(std::span<const Vec3f> offsets) {
+        // Six sums rather than a matrix's nine.
+        double x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+        for (const Vec3f& offset : offsets) {
+            const auto a = static_cast<double>(offset.x()), b = static_cast<double>(offset.y()),
+                       c = static_cast<double>(offset.z());
+            x += a;
+            y += b;
+            z += c;
+            xx += a * a;
+            xy += a * b;
+            xz += a * c;
+            yy += b * b;
+            yz += b * c;
+            zz += c * c;
         }
-        const double count = static_cast<double>(found.size() + 1);
-        const Eigen::Matrix3d covariance = squares / count - sum * sum.transpose() / (count * count);
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-        solver.computeDirect(covariance);
+        const double count = static_cast<double>(offsets.size() + 1), square = count * count;
+        Eigen::Matrix3d covariance;  // its upper half
+        covariance << xx / count - x * x / square, xy / count - x * y / square, xz / count - x * z / square, 0,
+            yy / count - y * y / square, yz / count - y * z / square, 0, 0, zz / count - z * z / square;
+        const LeastSpread spread = least_spread(covariance);
         Plane plane;
-        const Vec3d normal = solver.eigenvectors().col(0);
-        const Eigen::Vector3d spread = solver.eigenvalues().cwiseMax(0.0);
-        plane.is_line = spread[1] <= kLineShare * kLineShare * spread[2];
-        plane.normal = normal.allFinite() && normal.norm() > 0.5 ? Vec3f(normal.normalized().cast<float>())
-                                                                 : Vec3f(Vec3f::UnitZ());
+        plane.is_line = spread.middle <= kLineShare * kLineShare * spread.most;
+        plane.normal = spread.direction.cast<float>();
         return plane;
     }
 
-    FoundPoint cover_cell(std::size_t point, const Vec3f& normal, std::span<const Neighbour> found) const {
+    static FoundPoint cover_cell(const Vec3f& normal, const Vicinity& vicinity) {
         FoundPoint result;
         result.disk.normal = normal;
-        if (found.empty()) {
+        if (vicinity.count == 0) {
             result.disk.radius = kLonelyRadius;
             result.border = true;
             return result;
         }
         const TangentFrame frame = tangents_of({normal.x(), normal.y(), normal.z()});
         const Vec3f s(frame.s[0], frame.s[1], frame.s[2]), t(frame.t[0], frame.t[1], frame.t[2]);
-        const auto offset_of = [&](Neighbour neighbour) {
-            return Vec3f(points_[index_of(neighbour)] - points_[point]);
-        };
+        const auto distance = [&](std::size_t i) { return vicinity.offset[i].norm(); };
         // Beyond the last neighbour nothing is known.
-        const float limit = offset_of(found.back()).norm();
-        VoronoiCell cell(limit);
-        for (std::uint32_t i = 0; i < found.size(); ++i) {
-            const Vec3f offset = offset_of(found[i]);
+        VoronoiCell cell(distance(vicinity.count - 1));
+        for (std::uint32_t i = 0; i < vicinity.count; ++i) {
+            const Vec3f& offset = vicinity.offset[i];
             const Eigen::Vector2f projected(offset.dot(s), offset.dot(t));
             if (projected.squaredNorm() > kSteepest * kSteepest * offset.squaredNorm()) cell.cut(projected, i);
         }
         result.border = !cell.is_bounded();
-        const std::size_t last = result.border ? std::min(kBorderNeighbour, found.size() - 1) : found.size() - 1;
-        float radius = std::min(cell.reach(true) * kOverlap, offset_of(found[last]).norm());
+        const std::size_t last = result.border ? std::min(kBorderNeighbour, vicinity.count - 1) : vicinity.count - 1;
+        float radius = std::min(cell.reach(true) * kOverlap, distance(last));
         // No corner at all: a line of points, or two.
-        if (radius == 0) radius = offset_of(found.front()).norm() / 2 * kOverlap;
+        if (radius == 0) radius = distance(0) / 2 * kOverlap;
         result.disk.radius = radius;
         // Half-way to a neighbour the surface has risen half as far.
         cell.neighbours([&](std::uint32_t i) {
-            const float height = offset_of(found[i]).dot(normal) / 2;
+            const float height = vicinity.offset[i].dot(normal) / 2;
             result.disk.above = std::max(result.disk.above, height);
             result.disk.below = std::max(result.disk.below, -height);
         });
@@ -191,28 +227,31 @@ class Estimator {
 
     // A bird over a lidar tile must not become a cloud as wide as its distance from the ground.
     void shrink_isolated() {
-        std::vector<float> radii(points_.size());
-        tbb::parallel_for(std::size_t{0}, points_.size(),
-                          [&](std::size_t point) { radii[point] = surface_.disks[point].radius; });
+        // Points side by side are near each other, so that every so many are a fair sample.
+        std::vector<float> sample;
+        for (std::size_t point = 0; point < points_.size(); point += points_.size() / kSample + 1)
+            sample.push_back(surface_.disks[point].radius);
         const auto quantile = [&](double share) {
             const auto place =
-                radii.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
-            std::nth_element(radii.begin(), place, radii.end());
+                sample.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.size() - 1));
+            std::nth_element(sample.begin(), place, sample.end());
             return *place;
         };
         const float largest = kLargest * quantile(kLargestShare), usual = quantile(0.5);
+        std::vector<float> radii(points_.size());
         tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t point) {
-            const StoredNeighbours& stored = surface_.neighbours[point];
-            std::array<float, kStoredNeighbours> reaches, around;
-            for (std::size_t i = 0; i < kStoredNeighbours; ++i) {
-                reaches[i] = reach_[stored[i]];
-                around[i] = surface_.disks[stored[i]].radius;
-            }
-            constexpr std::size_t kMiddle = kStoredNeighbours / 2;
-            std::nth_element(reaches.begin(), reaches.begin() + kMiddle, reaches.end());
             radii[point] = surface_.disks[point].radius;
+            const StoredNeighbours& stored = surface_.neighbours[point];
+            constexpr std::size_t kMiddle = kStoredNeighbours / 2;
+            // Farther than the median: than so many.
+            std::size_t nearer = 0;
+            for (const std::uint32_t neighbour : stored)
+                nearer += reach_[point] > kIsolated * reach_[neighbour];
             const bool too_large = radii[point] > largest;
-            if (!too_large && reach_[point] <= kIsolated * reaches[kMiddle]) return;
+            if (!too_large && nearer <= kMiddle) return;
+            std::array<float, kStoredNeighbours> around;
+            for (std::size_t i = 0; i < kStoredNeighbours; ++i)
+                around[i] = surface_.disks[stored[i]].radius;
             std::nth_element(around.begin(), around.begin() + kMiddle, around.end());
             radii[point] = std::min({radii[point], around[kMiddle], too_large ? usual : radii[point]});
             ++isolated_points_;

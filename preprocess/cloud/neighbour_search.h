@@ -5,45 +5,33 @@
 // both).
 #pragma once
 
+#include "preprocess/cloud/near_block.h"
 #include "preprocess/mesh/indexed_mesh.h"
 
-#include <array>
-#include <bit>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 namespace splice {
 
-/// A neighbour as one number: the bits of its squared distance above those of its index, so that the nearer one, of
-/// equally near ones the one of the smaller index, is the smaller number. As a double, since processors keep sorted
-/// lists of those by minimum and maximum, several entries at a time.
-using Neighbour = double;
-
-/// Larger than any neighbour.
-inline constexpr Neighbour kNoNeighbour = std::numeric_limits<double>::max();
-
-inline std::uint32_t index_of(Neighbour neighbour) {
-    return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(neighbour));
-}
-inline float squared_distance_of(Neighbour neighbour) {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(neighbour) >> 32));
-}
-
 class NeighbourSearch {
   public:
-    static constexpr std::size_t kBlock = 16;
+    static constexpr std::size_t kBlock = kBlockPoints;
     static constexpr unsigned kMostNeighbours = 256;
 
     /// The `k` nearest of each point of one block, nearest first, kNoNeighbour where the cloud has no more points.
-    struct Lists {
-        unsigned k = 0;
-        std::vector<Neighbour> neighbours;
-
+    class Lists {
+      public:
         std::span<const Neighbour> of(std::size_t point_of_block) const {
-            return std::span(neighbours).subspan(point_of_block * k, k);
+            return {near_.first + point_of_block * near_.stride, near_.k};
         }
+
+      private:
+        friend class NeighbourSearch;
+        void reset(unsigned k);
+
+        NearLists near_;
+        std::vector<Neighbour> storage_;
     };
 
     /// Any order of the points is right, but only nearby points side by side are fast. Coordinates within 1e9.
@@ -56,16 +44,14 @@ class NeighbourSearch {
     void find(std::size_t block, unsigned k, Lists& lists, std::uint32_t points = 0xffff) const;
 
   private:
+    /// The fourth coordinate is 0, for the processor's vectors.
     struct Bounds {
-        Vec3f low, high;
-    };
-    struct Block {
-        std::array<float, kBlock> x, y, z;  // beyond the last point: far away
+        Eigen::Vector4f low, high;
     };
     class Query;
 
     std::size_t points_;
-    std::vector<Block> coordinates_;
+    std::vector<PointBlock> blocks_;
     std::vector<std::vector<Bounds>> levels_;  // of single blocks first, of all last
 };
 

@@ -7,7 +7,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 
 namespace splice {
 namespace {
@@ -47,7 +49,7 @@ class Orienter {
     OrientationStats orient() {
         const std::size_t pieces = (disks_.size() + kPiece - 1) / kPiece;
         tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) { join_piece(piece); });
-        number_sets();
+        number_sets(pieces);
         std::vector<std::vector<Vote>> votes(pieces);
         tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) { votes[piece] = count_votes(piece); });
         join_sets(votes);
@@ -58,6 +60,9 @@ class Orienter {
   private:
     Edge edge(std::size_t a, std::size_t b) const {
         return judge(positions_[a], positions_[b], disks_[a].normal, disks_[b].normal);
+    }
+    bool is_neighbour(std::size_t of, std::size_t point) const {
+        return std::ranges::count(neighbours_[of], static_cast<std::uint32_t>(point)) != 0;
     }
     std::size_t end_of(std::size_t piece) const { return std::min(disks_.size(), (piece + 1) * kPiece); }
 
@@ -72,6 +77,8 @@ class Orienter {
         for (std::size_t a = begin; a < end; ++a) {
             for (const std::uint32_t b : neighbours_[a]) {
                 if (b < begin || b >= end || b == a) continue;
+                // From b's side this edge was seen already.
+                if (b < a && is_neighbour(b, a)) continue;
                 const Edge found = edge(a, b);
                 if (found.certainty < kCertain) continue;
                 const float share = (1 - found.certainty) / (1 - kCertain);
@@ -91,10 +98,20 @@ class Orienter {
         }
     }
 
-    // From representatives to consecutive numbers; a representative is the first point of its set.
-    void number_sets() {
-        for (std::size_t a = 0; a < set_.size(); ++a)
-            set_[a] = set_[a] == a ? sets_++ : set_[set_[a]];
+    // From representatives to consecutive numbers, piece by piece; a representative is the first point of its set.
+    void number_sets(std::size_t pieces) {
+        first_set_.assign(pieces + 1, 0);
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+            for (std::size_t a = piece * kPiece; a < end_of(piece); ++a)
+                first_set_[piece + 1] += set_[a] == a;
+        });
+        std::inclusive_scan(first_set_.begin(), first_set_.end(), first_set_.begin());
+        sets_ = first_set_.back();
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+            std::uint32_t next = first_set_[piece];
+            for (std::size_t a = piece * kPiece; a < end_of(piece); ++a)
+                set_[a] = set_[a] == a ? next++ : set_[set_[a]];
+        });
     }
 
     std::vector<Vote> count_votes(std::size_t piece) const {
@@ -102,9 +119,12 @@ class Orienter {
         for (std::size_t a = piece * kPiece; a < end_of(piece); ++a) {
             for (const std::uint32_t b : neighbours_[a]) {
                 if (set_[a] == set_[b]) continue;
+                // Edges that both ends name are counted twice at once.
+                const bool mutual = is_neighbour(b, a);
+                if (b < a && mutual) continue;
                 const auto [low, high] = std::minmax(set_[a], set_[b]);
                 const Edge found = edge(a, b);
-                const auto weight = static_cast<double>(found.certainty);
+                const double weight = (mutual ? 2 : 1) * static_cast<double>(found.certainty);
                 votes.push_back({std::uint64_t{low} << 32 | high, found.opposite ? weight : -weight});
             }
         }
@@ -141,54 +161,62 @@ class Orienter {
             place_.push_back(components.find(set));
     }
 
-    struct Component {
+    // Sums over a set or component, weighted by area.
+    struct Sums {
         double area = 0;
-        Vec3d centre = Vec3d::Zero(), normal = Vec3d::Zero();  // sums, weighted by area
-        double outward = 0;
+        Vec3d centre = Vec3d::Zero(), normal = Vec3d::Zero();
+        double outward = 0;  // of normal times position
+
+        void add(const Sums& other, double sign) {
+            area += other.area;
+            centre += other.centre;
+            normal += sign * other.normal;
+            outward += sign * other.outward;
+        }
     };
 
-    double area_of(std::size_t point) const {
-        const auto radius = static_cast<double>(disks_[point].radius);
-        return radius * radius;
-    }
-
     void face_outward() {
-        std::vector<Component> components(sets_);
-        const auto component_of = [&](std::size_t point) -> Component& {
-            return components[place_[set_[point]].representative];
-        };
-        const auto normal_of = [&](std::size_t point) {
-            const Vec3d normal = disks_[point].normal.cast<double>();
-            return Vec3d(place_[set_[point]].opposite ? Vec3d(-normal) : normal);
-        };
-        for (std::size_t point = 0; point < disks_.size(); ++point) {
-            Component& component = component_of(point);
-            component.area += area_of(point);
-            component.centre += positions_[point].cast<double>() * area_of(point);
-            component.normal += normal_of(point) * area_of(point);
-        }
-        for (std::size_t point = 0; point < disks_.size(); ++point) {
-            Component& component = component_of(point);
-            component.outward +=
-                normal_of(point).dot(positions_[point].cast<double>() - component.centre / component.area) *
-                area_of(point);
-        }
+        std::vector<Sums> sums(sets_);
+        const std::size_t pieces = first_set_.size() - 1;
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+            for (std::size_t point = piece * kPiece; point < end_of(piece); ++point) {
+                Sums& set = sums[set_[point]];
+                const auto radius = static_cast<double>(disks_[point].radius);
+                const double area = radius * radius;
+                const Vec3d normal = area * disks_[point].normal.cast<double>(),
+                            position = positions_[point].cast<double>();
+                set.area += area;
+                set.centre += area * position;
+                set.normal += normal;
+                set.outward += normal.dot(position);
+            }
+        });
+        std::vector<Sums> components(sets_);
+        for (std::uint32_t set = 0; set < sets_; ++set)
+            components[place_[set].representative].add(sums[set], place_[set].opposite ? -1 : 1);
         std::vector<char> inward(sets_, 0);
         for (std::uint32_t set = 0; set < sets_; ++set) {
-            const Component& component = components[set];
+            const Sums& component = components[set];
             if (place_[set].representative != set) continue;
             ++stats_.components;
             Vec3d::Index axis = 0;
             component.normal.cwiseAbs().maxCoeff(&axis);
             const bool closed = component.normal.norm() < kClosed * component.area;
-            inward[set] = (closed ? component.outward : component.normal[axis]) < 0;
+            const double outward = component.outward - component.normal.dot(component.centre) / component.area;
+            inward[set] = (closed ? outward : component.normal[axis]) < 0;
         }
-        for (std::size_t point = 0; point < disks_.size(); ++point) {
-            const SignedSets::Place place = place_[set_[point]];
-            if (place.opposite == (inward[place.representative] != 0)) continue;
-            flip(point);
-            ++stats_.flipped_normals;
-        }
+        std::atomic<std::uint64_t> flipped{0};
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t piece) {
+            std::uint64_t of_piece = 0;
+            for (std::size_t point = piece * kPiece; point < end_of(piece); ++point) {
+                const SignedSets::Place place = place_[set_[point]];
+                if (place.opposite == (inward[place.representative] != 0)) continue;
+                flip(point);
+                ++of_piece;
+            }
+            flipped += of_piece;
+        });
+        stats_.flipped_normals = flipped;
     }
 
     void flip(std::size_t point) {
@@ -202,6 +230,7 @@ class Orienter {
     std::span<CloudDisk> disks_;
     std::vector<std::uint32_t> set_;  // of each point: its representative, later its number
     std::uint32_t sets_ = 0;
+    std::vector<std::uint32_t> first_set_;  // of each piece
     std::vector<SignedSets::Place> place_;  // of each set in its component
     OrientationStats stats_;
 };

@@ -127,7 +127,8 @@ class LasParser {
         double largest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             columns.colour[k] = {first + 2 * k, record, PlyType::kUint16, false, 1, 0};
-            for (std::size_t point = 0; point < columns.records; ++point)
+            // All that matters is whether it is 0, of 8 bits, or more.
+            for (std::size_t point = 0; point < columns.records && largest <= 255; ++point)
                 largest = std::max(largest, columns.colour[k][point]);
         }
         for (ScalarColumn& column : columns.colour) {

@@ -13,6 +13,11 @@
 
 namespace splice {
 
+/// std::hypot is several times as slow, for numbers too large or small to be squared.
+inline double length_of(double x, double y) {
+    return std::sqrt(x * x + y * y);
+}
+
 struct Ellipse {
     Eigen::Vector2d axis = Eigen::Vector2d::UnitX();  // of the major half axis, unit
     double major = 0, minor = 0;
@@ -22,7 +27,7 @@ struct Ellipse {
 inline Ellipse ellipse_of(const Eigen::Matrix2d& covariance) {
     const double middle = (covariance(0, 0) + covariance(1, 1)) / 2;
     const double difference = (covariance(0, 0) - covariance(1, 1)) / 2;
-    const double radius = std::hypot(difference, covariance(0, 1));
+    const double radius = length_of(difference, covariance(0, 1));
     Ellipse ellipse;
     if (!(middle + radius > 0)) return ellipse;
     const double angle = std::atan2(covariance(0, 1), difference) / 2;
@@ -56,7 +61,7 @@ inline Ellipse ellipse_around(std::span<const Footprint> footprints) {
     constexpr double kLonger = 1.1;
     Ellipse ellipse;
     for (const Footprint& footprint : footprints)
-        ellipse.major = std::max(ellipse.major, std::hypot(footprint.x, footprint.y) + footprint.radius);
+        ellipse.major = std::max(ellipse.major, length_of(footprint.x, footprint.y) + footprint.radius);
     const double circle = ellipse.major, longer = kLonger * circle;
     for (const Footprint& footprint : footprints)
         ellipse.minor = std::max(ellipse.minor, minor_to_hold(footprint, longer));

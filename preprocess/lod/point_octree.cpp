@@ -71,7 +71,7 @@ struct Part {
 
     // How far its disks go along `direction`.
     double reach(const Vec3d& direction) const {
-        const double in_plane = std::hypot(axes[0].dot(direction), axes[1].dot(direction));
+        const double in_plane = length_of(axes[0].dot(direction), axes[1].dot(direction));
         return std::min(in_plane + height * std::abs(normal.dot(direction)), sphere);
     }
 };
@@ -93,7 +93,7 @@ Part part_of(const format::Surfel& surfel) {
     part.below = static_cast<double>(extent.below);
     part.longest = r;
     part.height = 0;
-    part.sphere = std::hypot(r, std::max(part.above, part.below));
+    part.sphere = length_of(r, std::max(part.above, part.below));
     part.cone = 0;
     return part;
 }
@@ -150,6 +150,7 @@ class Builder {
         // Normals that cancel out: any will do, the cone will say so.
         const bool usable = sums.normal.norm() > 1e-6 * sums.area;
         node.normal = encoded(usable ? sums.normal : decoded(surfels_[node.first_surfel].normal));
+        round_node(node);
     }
 
     // Of a node that has been bounded.
@@ -198,6 +199,7 @@ class Builder {
                       static_cast<double>(frame.t[2]));
         const Ellipse spread = ellipse_of(sums_[index].covariance.in_plane(centre, s, t));
         node.major_axis = encoded(spread.axis.x() * s + spread.axis.y() * t);
+        round_node(node);
         // From here on the axis that is stored; what it leaves the plane by is within the rounding added below.
         const Vec3d major = decoded(node.major_axis), minor = normal.cross(major);
 
@@ -219,7 +221,7 @@ class Builder {
                 cone = std::max(cone, std::acos(std::clamp(part.normal.dot(normal), -1.0, 1.0)) + part.cone);
             }
             const double height = offset.dot(normal),
-                         slant = std::hypot(part.axes[0].dot(normal), part.axes[1].dot(normal));
+                         slant = length_of(part.axes[0].dot(normal), part.axes[1].dot(normal));
             above = std::max(above, height + slant + part.above);
             below = std::max(below, -height + slant + part.below);
             largest_radius = std::max(largest_radius, part.longest);
@@ -230,6 +232,7 @@ class Builder {
         node.major = length(ellipse.major);
         node.minor = length(ellipse.minor);
         node.sphere_radius = length(sphere);
+        round_node(node);
         // A thousandth of a radian for the rounding of normals.
         node.cone_angle =
             static_cast<std::uint8_t>(std::min(std::ceil((cone + 1e-3) / std::numbers::pi * kConeSteps), kConeSteps));

@@ -5,7 +5,7 @@
 // points; above, from its children's, which costs no more than a walk over the nodes.
 #pragma once
 
-#include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <span>
 #include <vector>

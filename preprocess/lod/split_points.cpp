@@ -6,9 +6,13 @@
 
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace splice {
 namespace {
+
+// Large nodes are divided by parts of so many surfels, in parallel.
+constexpr std::size_t kPart = 1 << 16;
 
 using Counts = std::array<std::uint32_t, 8>;
 
@@ -49,26 +53,51 @@ class Splitter {
         if (node.surfel_count <= kPointLeaf) return counts;
         const std::span<std::uint32_t> range = std::span(split_.order).subspan(node.first_surfel, node.surfel_count);
         const std::span<std::uint32_t> sorted = std::span(scratch_).subspan(node.first_surfel, node.surfel_count);
-        Vec3d mean = Vec3d::Zero();
-        for (const std::uint32_t surfel : range)
-            mean += position_of(surfels_[surfel]);
-        mean /= static_cast<double>(range.size());
+        const std::size_t parts = (range.size() + kPart - 1) / kPart;
+        const auto part_of = [&](std::size_t part) {
+            return range.subspan(part * kPart, std::min(kPart, range.size() - part * kPart));
+        };
+        const auto for_each_part = [&](const auto& visit) {
+            if (parts == 1) return visit(std::size_t{0});
+            tbb::parallel_for(std::size_t{0}, parts, visit);
+        };
+        std::vector<Vec3d> sums(parts, Vec3d::Zero());
+        for_each_part([&](std::size_t part) {
+            for (const std::uint32_t surfel : part_of(part))
+                sums[part] += position_of(surfels_[surfel]);
+        });
+        const Vec3d mean =
+            std::accumulate(sums.begin(), sums.end(), Vec3d(Vec3d::Zero())) / static_cast<double>(range.size());
         const auto octant = [&](std::uint32_t surfel) {
             const Vec3d p = position_of(surfels_[surfel]);
             return (p.x() > mean.x() ? 1u : 0u) | (p.y() > mean.y() ? 2u : 0u) | (p.z() > mean.z() ? 4u : 0u);
         };
-        for (const std::uint32_t surfel : range)
-            ++counts[octant(surfel)];
+        std::vector<Counts> places(parts, Counts{});
+        for_each_part([&](std::size_t part) {
+            for (const std::uint32_t surfel : part_of(part))
+                ++places[part][octant(surfel)];
+        });
+        // From how many to where the part's first goes.
+        std::uint32_t next = 0;
+        for (std::size_t o = 0; o < counts.size(); ++o) {
+            const std::uint32_t first = next;
+            for (Counts& part : places)
+                next += std::exchange(part[o], next);
+            counts[o] = next - first;
+        }
         for (const std::uint32_t count : counts) {
             // The mean does not separate points that rounding has made one: any halves will do.
             if (count != node.surfel_count) continue;
             return {count / 2, count - count / 2};
         }
-        std::array<std::uint32_t, 8> next{};
-        std::exclusive_scan(counts.begin(), counts.end(), next.begin(), 0u);
-        for (const std::uint32_t surfel : range)
-            sorted[next[octant(surfel)]++] = surfel;
-        std::copy(sorted.begin(), sorted.end(), range.begin());
+        for_each_part([&](std::size_t part) {
+            for (const std::uint32_t surfel : part_of(part))
+                sorted[places[part][octant(surfel)]++] = surfel;
+        });
+        for_each_part([&](std::size_t part) {
+            std::copy_n(sorted.begin() + static_cast<std::ptrdiff_t>(part * kPart), part_of(part).size(),
+                        part_of(part).begin());
+        });
         return counts;
     }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "preprocess/mesh/indexed_mesh.h"
-#include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <span>
 #include <vector>

@@ -22,7 +22,8 @@ struct Model {
     std::vector<format::Material> materials;
     std::vector<format::Texture> textures;
     std::vector<std::byte> texels;
-    std::vector<format::PointNode> point_tree;
+    std::vector<format::PackedPointNode> point_tree;
+    std::vector<format::PackedSurfel> packed_surfels;  // of a point cloud, in place of `surfels`
 };
 
 /// Borrowed form: spans into a Model or into a mapped file; what the engine loads from. The owner must outlive it.
@@ -38,7 +39,13 @@ struct ModelView {
     std::span<const format::Material> materials;
     std::span<const format::Texture> textures;
     std::span<const std::byte> texels;
-    std::span<const format::PointNode> point_tree;
+    std::span<const format::PackedPointNode> point_tree;
+    std::span<const format::PackedSurfel> packed_surfels;
+
+    bool is_packed() const { return !packed_surfels.empty(); }
+    std::uint64_t surfel_count() const { return is_packed() ? packed_surfels.size() : surfels.size(); }
+    /// Unpacked where it is packed (packed_surfel.h).
+    format::Surfel surfel(std::uint64_t index) const;
 };
 
 ModelView view_of(const Model& model);
@@ -65,6 +72,8 @@ class ModelFile {
     ~ModelFile();
     const ModelView& view() const { return view_; }
     std::span<const std::byte> bytes() const { return bytes_; }
+    /// Lets go of the memory that holds a part of them, until it is read again.
+    void release(std::span<const std::byte> part) const;
 
   private:
     std::span<const std::byte> bytes_;

@@ -32,8 +32,9 @@ std::span<const std::byte> map_file(const std::filesystem::path& path) {
     if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "", "not a regular file");
     const auto size = static_cast<std::size_t>(status.st_size);
     if (size == 0) return {};  // an empty mapping is an error to mmap; the parser says what is wrong
-    void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file.number, 0);
+    void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
     if (memory == MAP_FAILED) fail(path);
+    madvise(memory, size, MADV_WILLNEED);
     return {static_cast<const std::byte*>(memory), size};
 }
 
@@ -59,6 +60,14 @@ ModelFile& ModelFile::operator=(ModelFile&& other) noexcept {
     std::swap(bytes_, other.bytes_);
     std::swap(view_, other.view_);
     return *this;
+}
+
+void ModelFile::release(std::span<const std::byte> part) const {
+    // Whole pages, so that nothing beside the part goes.
+    const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+    const auto begin = (reinterpret_cast<std::uintptr_t>(part.data()) + page - 1) / page * page;
+    const auto end = reinterpret_cast<std::uintptr_t>(part.data() + part.size()) / page * page;
+    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
 }
 
 ModelFile::~ModelFile() {

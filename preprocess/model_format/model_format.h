@@ -14,7 +14,7 @@
 namespace splice::format {
 
 inline constexpr char kMagic[8] = {'S', 'P', 'L', 'I', 'C', 'E', '\r', '\n'};
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 
 struct FileHeader {
@@ -32,7 +32,7 @@ enum class SectionKind : std::uint32_t {
     kModelInfo = 1,   // one ModelInfo
     kVertices = 2,    // Vertex
     kIndices = 3,     // uint32; the finest level of all patches comes first, patch by patch
-    kSurfels = 4,     // Surfel; a patch's are contiguous, in the order of the point tree
+    kSurfels = 4,     // Surfel; a patch's are contiguous, in the order of the point tree; none in a point cloud
     kPatches = 5,     // Patch, in octree order
     kLods = 6,        // Lod
     kOctree = 7,      // OctreeNode; node 0 is the root, children of a node are contiguous
@@ -40,7 +40,8 @@ enum class SectionKind : std::uint32_t {
     kMaterials = 9,   // Material; at least one
     kTextures = 10,   // Texture
     kTexels = 11,     // bytes, RGBA8 sRGB, mip levels one after another, rows top to bottom
-    kPointTree = 12,  // PointNode; none without surfels. Node 0 is the root, children of a node are contiguous
+    kPointTree = 12,  // PackedPointNode; none without surfels. Node 0 is the root, children of a node are contiguous
+    kPackedSurfels = 13,  // PackedSurfel; the surfels of a point cloud, in place of kSurfels
 };
 
 struct SectionEntry {
@@ -151,24 +152,27 @@ struct MergeNode {
 };
 static_assert(sizeof(MergeNode) == 16);
 
-/// A node of the point octree (Pajarola et al. 2004, sections 3.2 and 4): an elliptical splat that stands for all
-/// surfels below it.
-struct PointNode {
-    float position[3];         // mean of the surfels' centres; centre of ellipse and sphere
-    float sphere_radius;       // every disk below it, its solid included, is in this sphere
-    std::uint32_t normal;      // octahedral; of the ellipse's plane and axis of the normal cone
-    std::uint32_t major_axis;  // octahedral; in the plane, up to rounding
-    float major, minor;        // half axes: projected to the plane, every disk below it is in the ellipse
-    std::uint8_t colour[3];    // sRGB; mean over the disks' areas in linear light
-    std::uint8_t cone_angle;  // half-angle of a cone about `normal` that holds every normal below it, steps of pi / 255
-    std::uint16_t extent;     // surfel_extent.h, with `major` as the radius
-    std::uint8_t child_count;  // 0: a leaf, whose children are its surfels
-    std::uint8_t reserved;     // 0
-    std::uint32_t first_child;
-    std::uint32_t first_surfel;  // surfels [first_surfel, first_surfel + surfel_count) are below it
-    std::uint32_t surfel_count;
+/// A surfel of a point cloud: whole, and with one normal all over. packed_surfel.h encodes it and states its errors.
+struct PackedSurfel {
+    std::uint32_t place[2];  // bits 0..19, 20..39, 40..59: x, y, z; 60..63: above, its lower bits
+    std::uint32_t look;  // bits 0..23: red, green, blue, sRGB; 24..27: below, its lower bits; 28..31: radius, its lower
+    std::uint32_t shape;  // bits 0..9, 10..19: octahedral normal; 20..29: radius, its upper bits; 30: above, 31: below
 };
-static_assert(sizeof(PointNode) == 52 && offsetof(PointNode, first_child) == 40);
+static_assert(sizeof(PackedSurfel) == 16);
+
+/// A node of the point octree; point_node.h says what it stands for, encodes it and states its errors.
+struct PackedPointNode {
+    std::uint32_t place[2];       // as a PackedSurfel's; bits 60..63: 0
+    std::uint16_t major;          // half (half.h): major half axis of the ellipse
+    std::uint16_t sphere_radius;  // half
+    std::uint32_t frame;          // bits 0..11, 12..23: octahedral normal; 24..31: direction of the major axis
+    std::uint8_t ratio;           // minor half axis over the major one, 255ths
+    std::uint8_t colour[3];       // sRGB
+    std::uint8_t cone_angle;      // steps of pi / 255
+    std::uint8_t below;           // 1..127: a leaf of so many surfels; 128 + n: n children
+    std::uint16_t extent;         // surfel_extent.h, with the major half axis as the radius
+};
+static_assert(sizeof(PackedPointNode) == 24 && offsetof(PackedPointNode, extent) == 22);
 
 inline constexpr std::uint32_t kNoTexture = 0xffffffffu;
 

@@ -50,6 +50,9 @@ class Parser {
         std::memcpy(&header_, bytes_.data(), sizeof(header_));
         if (std::memcmp(header_.magic, kMagic, sizeof(kMagic)) != 0)
             fail(0, "not a model file (wrong first eight bytes)");
+        if (header_.version >= 1 && header_.version < kVersion)
+            fail(offsetof(FileHeader, version), "format version ", header_.version, ", this program reads version ",
+                 kVersion, ": bake the model again from its source with splice-bake");
         if (header_.version != kVersion)
             fail(offsetof(FileHeader, version), "format version ", header_.version, ", this program reads version ",
                  kVersion);

@@ -1,6 +1,7 @@
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/checksum.h"
 #include "preprocess/model_format/model.h"
+#include "preprocess/model_format/packed_surfel.h"
 #include "preprocess/model_format/section_layout.h"
 
 #include <algorithm>
@@ -11,10 +12,11 @@ namespace {
 
 using namespace format;
 
-// Header and table, an even number of entries: everything before the first section.
+// Header and table: everything before the first section.
 struct FileStart {
     FileHeader header{};
     std::array<SectionEntry, kSectionCount> table{};
+    std::array<std::byte, round_up_to_alignment(sizeof table) - sizeof table> padding{};
 };
 static_assert(sizeof(FileStart) % kSectionAlignment == 0);
 
@@ -65,8 +67,14 @@ std::uint64_t write_all(const ModelView& view, const Sink& sink) {
 }  // namespace
 
 ModelView view_of(const Model& model) {
-    return {&model.info,  model.vertices,   model.indices,   model.surfels,  model.patches, model.lods,
-            model.octree, model.merge_tree, model.materials, model.textures, model.texels,  model.point_tree};
+    return {&model.info,  model.vertices,   model.indices,       model.surfels,   model.patches,
+            model.lods,   model.octree,     model.merge_tree,    model.materials, model.textures,
+            model.texels, model.point_tree, model.packed_surfels};
+}
+
+Surfel ModelView::surfel(std::uint64_t index) const {
+    if (!is_packed()) return surfels[index];
+    return unpack_surfel(packed_surfels[index], static_cast<std::uint16_t>(index / kPackedBlock));
 }
 
 std::uint64_t write_model(const ModelView& view, const std::filesystem::path& path) {

@@ -9,7 +9,7 @@
 
 namespace splice::format {
 
-inline constexpr std::size_t kSectionCount = 12;
+inline constexpr std::size_t kSectionCount = 13;
 
 constexpr std::uint64_t round_up_to_alignment(std::uint64_t bytes) {
     return (bytes + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
@@ -33,6 +33,7 @@ void for_each_section(View& view, const Visitor& visit) {
     visit(SectionKind::kTextures, "textures", view.textures);
     visit(SectionKind::kTexels, "texels", view.texels);
     visit(SectionKind::kPointTree, "point tree", view.point_tree);
+    visit(SectionKind::kPackedSurfels, "packed surfels", view.packed_surfels);
 }
 
 }  // namespace splice::format

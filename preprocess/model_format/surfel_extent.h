@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -31,12 +32,19 @@ inline std::uint16_t encode_extent(const SurfelExtent& extent, float radius) {
                                       step(extent.epsilon, kEpsilonStep, kEpsilonOne, kEpsilonLast) << 10);
 }
 
+/// What each step stands for, in radii.
+template <std::size_t kSteps>
+inline std::array<float, kSteps> extent_table(float powers, float one) {
+    std::array<float, kSteps> table{};
+    for (std::size_t step = 1; step < kSteps; ++step)
+        table[step] = std::exp2(powers * (static_cast<float>(step) - one));
+    return table;
+}
+
 inline SurfelExtent decode_extent(std::uint16_t bits, float radius) {
-    const auto length = [&](int step, float powers, float one) {
-        return step == 0 ? 0.0f : radius * std::exp2(powers * (static_cast<float>(step) - one));
-    };
-    return {length(bits & 31, kSwellStep, kSwellOne), length(bits >> 5 & 31, kSwellStep, kSwellOne),
-            length(bits >> 10, kEpsilonStep, kEpsilonOne)};
+    static const auto swell = extent_table<32>(kSwellStep, kSwellOne);
+    static const auto epsilon = extent_table<64>(kEpsilonStep, kEpsilonOne);
+    return {radius * swell[bits & 31u], radius * swell[bits >> 5 & 31u], radius * epsilon[bits >> 10]};
 }
 
 }  // namespace splice

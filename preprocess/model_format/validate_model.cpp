@@ -2,12 +2,15 @@
 
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/half.h"
+#include "preprocess/model_format/packed_surfel.h"
+#include "preprocess/model_format/point_node.h"
 #include "preprocess/model_format/surfel_extent.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <sstream>
 #include <vector>
 
@@ -50,7 +53,11 @@ class Validator {
         check_indices();
         check_textures();
         check_patches();
-        check_surfels();
+        if (is_cloud()) {
+            check_packed_surfels();
+        } else {
+            check_surfels();
+        }
         check_octree();
         check_merge_tree();
         check_point_tree();
@@ -142,8 +149,8 @@ class Validator {
             check_patch(patch);
             require(patch.first_surfel == surfel, patch.first_surfel, "patch's surfels start at ", patch.first_surfel,
                     ", expected ", surfel);
-            require(patch.surfel_count <= view_.surfels.size() - surfel, patch.surfel_count, patch.surfel_count,
-                    " surfels in a patch, ", view_.surfels.size() - surfel, " are left");
+            require(patch.surfel_count <= view_.surfel_count() - surfel, patch.surfel_count, patch.surfel_count,
+                    " surfels in a patch, ", view_.surfel_count() - surfel, " are left");
             require(patch.first_lod == lod, patch.first_lod, "patch's levels start at ", patch.first_lod, ", expected ",
                     lod);
             require(patch.lod_count >= 1 && patch.lod_count <= view_.lods.size() - lod, patch.lod_count,
@@ -160,7 +167,7 @@ class Validator {
             if (patch.representation == Representation::kTriangles) drawn += lods.front().index_count / 3;
         }
         const ModelInfo& info = *view_.info;
-        require(surfel == view_.surfels.size(), info, view_.surfels.size(), " surfels, the patches have ", surfel);
+        require(surfel == view_.surfel_count(), info, view_.surfel_count(), " surfels, the patches have ", surfel);
         require(lod == view_.lods.size(), info, view_.lods.size(), " levels, the patches have ", lod);
         require(index == info.source_triangles * 3, info.source_triangles, info.source_triangles,
                 " source triangles, the finest levels have ", index / 3);
@@ -204,7 +211,22 @@ class Validator {
         }
     }
 
+    void check_packed_surfels() const {
+        require(view_.surfels.empty(), *view_.info, "a point cloud with surfels that are not packed");
+        for (const Patch& patch : view_.patches) {
+            for (const PackedSurfel& packed : view_.packed_surfels.subspan(patch.first_surfel, patch.surfel_count)) {
+                const Surfel surfel = unpack_surfel(packed, 0);
+                const float radius = float_from_half(surfel.radius);
+                require(radius <= patch.max_surfel_radius, packed,
+                        "surfel radius is not between 0 and the patch's largest");
+                require(decode_extent(surfel.extent, radius).epsilon <= patch.max_surfel_epsilon, packed,
+                        "surfel epsilon is not between 0 and the patch's largest");
+            }
+        }
+    }
+
     void check_surfels() const {
+        require(view_.packed_surfels.empty(), *view_.info, "packed surfels in a model that is no point cloud");
         for (std::uint32_t p = 0; p < view_.patches.size(); ++p) {
             const Patch& patch = view_.patches[p];
             for (const Surfel& surfel : view_.surfels.subspan(patch.first_surfel, patch.surfel_count)) {
@@ -284,41 +306,31 @@ class Validator {
         }
     }
 
-    // As check_octree(), over surfels instead of patches.
+    // As check_octree(): what is not stored follows from the counts once they add up.
     void check_point_tree() const {
         if (view_.point_tree.empty()) return;
-        const PointNode& root = view_.point_tree.front();
-        require(root.first_surfel == 0 && root.surfel_count == view_.surfels.size(), root,
-                "point tree's root does not hold all surfels");
-        std::uint64_t next = 1;
-        for (const PointNode& node : view_.point_tree) {
-            require(all_finite(node.position), node, "point node's position is not finite");
-            require(is_length(node.sphere_radius), node.sphere_radius, "point node's radius is not a length");
-            require(is_length(node.major) && is_length(node.minor) && node.minor <= node.major, node.major,
-                    "point node's axes are no ellipse's");
-            require(node.reserved == 0, node.reserved, "reserved bytes are not 0");
-            require(node.surfel_count > 0, node.surfel_count, "point node without surfels");
-            if (node.child_count == 0) {
-                require(node.first_child == 0, node.first_child, "point tree's leaf with a child");
+        std::uint64_t next = 1, surfels = 0;
+        for (const PackedPointNode& node : view_.point_tree) {
+            require(node.place[1] >> 28 == 0, node, "point node's spare bits are not 0");
+            for (const std::uint16_t& length : {std::cref(node.major), std::cref(node.sphere_radius)})
+                require(is_length(float_from_half(length)) && length < 0x8000, length,
+                        "point node's length is no length");
+            constexpr unsigned kInner = kMostLeafSurfels + 1;
+            require(node.below != 0 && node.below != kInner, node.below, "point node without surfels");
+            if (node.below < kInner) {
+                surfels += node.below;
                 continue;
             }
-            require(node.child_count <= 8, node.child_count, unsigned{node.child_count}, " children of a point node");
-            require(node.first_child == next, node.first_child, "point node's children start at ", node.first_child,
-                    ", expected ", next);
-            require(node.child_count <= view_.point_tree.size() - next, node.child_count,
-                    "point node's children beyond the ", view_.point_tree.size(), " nodes");
-            std::uint64_t surfel = node.first_surfel;
-            const std::uint64_t end = surfel + node.surfel_count;
-            for (const PointNode& child : view_.point_tree.subspan(next, node.child_count)) {
-                require(child.first_surfel == surfel && child.surfel_count <= end - surfel, child,
-                        "point node's children do not divide its surfels");
-                surfel += child.surfel_count;
-            }
-            require(surfel == end, node, "point node's children do not divide its surfels");
-            next += node.child_count;
+            const unsigned children = node.below - kInner;
+            require(children <= 8, node.below, children, " children of a point node");
+            require(children <= view_.point_tree.size() - next, node.below, "point node's children beyond the ",
+                    view_.point_tree.size(), " nodes");
+            next += children;
         }
+        const PackedPointNode& root = view_.point_tree.front();
         require(next == view_.point_tree.size(), root, view_.point_tree.size(), " point nodes, ", next,
                 " are reached from the root");
+        require(surfels == view_.surfel_count(), root, view_.surfel_count(), " surfels, the point tree has ", surfels);
     }
 
     const ModelView& view_;

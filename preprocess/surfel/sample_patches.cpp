@@ -163,10 +163,10 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
         throw UsageError("surfel spacing needs 0 < h-min <= h-max");
     if (options.thesis_c && !(*options.thesis_c > 0)) throw UsageError("the sampling constant C must be above 0");
     const auto start = Clock::now();
-    std::optional<SpacingField> field;
-    if (!options.thesis_c) field.emplace(mesh, options);
-    const SurfaceColour colour(mesh);
     const SmoothNeighbours neighbours = find_smooth_neighbours(mesh);
+    std::optional<SpacingField> field;
+    if (!options.thesis_c) field.emplace(mesh, neighbours, options);
+    const SurfaceColour colour(mesh);
     const Inputs inputs{mesh, options, field ? &*field : nullptr, colour, neighbours};
     if (progress) progress("sample", 0.1);
 

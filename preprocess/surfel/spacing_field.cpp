@@ -20,7 +20,10 @@ constexpr float kTurnPerSpacing = 0.5f;        // radians, at most
 constexpr float kColourPerSpacing = 0.12f;     // of the distance from black to one primary, sRGB-encoded, at most
 constexpr float kFinestDetail = 1.0f / 512;    // no curvature or colour asks for less: a pixel of a small picture
 constexpr float kFeatureSpacing = 1.0f / 400;  // disks are cut at edges, but by one line only: corners overhang
-constexpr float kCreaseCosine = 0.94f;         // corner normals that differ by more than 20 degrees across an edge
+// Where the surface is narrower than such a disk, as slivers at a folded rim are, spacing follows its width: by one
+// line a disk is cut on one side only, and on the other it would stand out.
+constexpr float kNarrowest = 1.0f / 1000;
+constexpr float kCreaseCosine = 0.94f;  // corner normals that differ by more than 20 degrees across an edge
 constexpr int kMaxGradingSweeps = 24;
 
 struct HalfEdge {
@@ -55,7 +58,7 @@ float distance_to_segment(const Vec3f& p, const Vec3f& a, const Vec3f& b) {
 
 }  // namespace
 
-SpacingField::SpacingField(const IndexedMesh& mesh, const SamplingOptions& options)
+SpacingField::SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SamplingOptions& options)
     : mesh_(mesh),
       feature_spacing_(
           std::clamp(kFeatureSpacing, static_cast<float>(options.h_min), static_cast<float>(options.h_max))) {
@@ -63,6 +66,10 @@ SpacingField::SpacingField(const IndexedMesh& mesh, const SamplingOptions& optio
     grade(vertex_spacing_);
     find_features();
     grade(feature_distance_);
+    width_ = sheet_widths(mesh, neighbours, feature_spacing_ / 2);
+    const float narrowest = std::min(std::max(kNarrowest, static_cast<float>(options.h_min)), feature_spacing_);
+    for (float& width : width_)
+        width = width < feature_spacing_ ? std::max(width, narrowest) : std::numeric_limits<float>::max();
 }
 
 void SpacingField::measure_detail(const SamplingOptions& options) {
@@ -210,7 +217,7 @@ float SpacingField::at(std::uint32_t t, const Vec3f& point) const {
             spacing = std::min(spacing, feature_spacing_ + kGrading * distance_to_segment(point, p[k], p[(k + 1) % 3]));
         }
     }
-    return spacing;
+    return std::min(spacing, width_[t]);
 }
 
 }  // namespace splice

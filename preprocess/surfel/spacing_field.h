@@ -3,6 +3,7 @@
 #pragma once
 
 #include "preprocess/mesh/indexed_mesh.h"
+#include "preprocess/surfel/sheet.h"
 #include "preprocess/surfel/surfel_set.h"
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace splice {
 class SpacingField {
   public:
     /// The adaptive field; reads options.h_min and options.h_max.
-    SpacingField(const IndexedMesh& mesh, const SamplingOptions& options);
+    SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SamplingOptions& options);
 
     /// Distance wanted between neighbouring surfels at a point of triangle `t`, unit-box units.
     float at(std::uint32_t t, const Vec3f& point) const;
@@ -33,6 +34,7 @@ class SpacingField {
     std::vector<float> vertex_spacing_;       // one a position
     std::vector<float> feature_distance_;     // one a position: spacing that its distance to the nearest feature allows
     std::vector<std::uint8_t> feature_edge_;  // one a triangle: bit k for the edge from corner k to k + 1
+    std::vector<float> width_;                // one a triangle: spacing that the width of its sheet allows
     float feature_spacing_;
 };
 

@@ -9,6 +9,7 @@
 #include "octahedral.glsl"
 #include "colour.glsl"
 #include "lighting.glsl"
+#include "surfel_record.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
 #include "splat_record.glsl"

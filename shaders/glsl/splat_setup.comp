@@ -13,6 +13,7 @@
 #include "colour.glsl"
 #include "lighting.glsl"
 #include "splat.glsl"
+#include "surfel_record.glsl"
 #include "surfel_frame.glsl"
 #include "tile.glsl"
 #include "splat_record.glsl"
@@ -21,7 +22,7 @@ layout(local_size_x = 8) in;
 
 layout(constant_id = 5) const bool DEFERRED = false;  // records have normals and albedos instead of lit colours
 
-layout(set = 1, binding = 0) uniform usamplerBuffer surfels;  // format::Surfel: two texels each
+layout(set = 1, binding = 0) uniform usamplerBuffer surfels;  // format::Surfel, two texels each, or format::PackedSurfel, one
 layout(set = 2, binding = 1, rgba32ui) uniform writeonly uimageBuffer records;
 layout(set = 2, binding = 2, rg32ui) uniform writeonly uimageBuffer block_bounds;
 
@@ -29,31 +30,21 @@ shared uint remaining[GROUP];
 
 uint first_solid;  // of tiles
 
-SurfelRecord decode(uvec4 place, uvec4 look) {
-    SurfelRecord record;
-    record.position = uintBitsToFloat(place.xyz);
-    record.radius = unpackHalf2x16(place.w).x;
-    record.extent = place.w >> 16;
-    record.normal = unpackSnorm2x16(look.x);
-    record.colour = unpackUnorm4x8(look.y).rgb;
-    record.bend_0 = unpackSnorm4x8(look.y).w;
-    record.bend_1_4 = unpackSnorm4x8(look.z);
-    record.patch_number = look.w & 0xffff;
-    record.clip = look.w >> 16;
-    return record;
-}
+// Texels of a record; the second of a packed surfel's is none.
+uvec4 first_of(uint index) { return texelFetch(surfels, int(is_packed() ? index : 2 * index)); }
+uvec4 second_of(uint index) { return is_packed() ? uvec4(0) : texelFetch(surfels, int(2 * index + 1)); }
 
 // Whether anything of a surfel can be in the picture; true when in doubt. Nothing it stands for is farther from its
 // centre than a radius across and one along its normal.
 bool may_show(uint index) {
-    const uvec4 place = texelFetch(surfels, int(2 * index));
-    const vec3 centre = to_view_space(uintBitsToFloat(place.xyz));
+    const uvec4 first = first_of(index);
+    const vec3 centre = to_view_space(position_of(first));
     const float depth = -centre.z;
-    const float reach = sqrt(2.0) * abs(unpackHalf2x16(place.w).x) * instance.scale;
+    const float reach = sqrt(2.0) * abs(radius_of(first)) * instance.scale;
     const vec2 half_view = (frame.viewport * 0.5 + PREFILTER_REACH) / frame.pixel_scale;
     const vec2 outside = ORTHOGRAPHIC ? abs(centre.xy) - half_view
                                       : (abs(centre.xy) - half_view * depth) * inversesqrt(1 + half_view * half_view);
-    const vec3 normal = decode_octahedral(unpackSnorm2x16(texelFetch(surfels, int(2 * index + 1)).x));
+    const vec3 normal = decode_octahedral(normal_of(first, second_of(index)));
     const bool away =
         (instance.flags & INSTANCE_TWO_SIDED) == 0 && beyond_horizon(normal_to_view_space(normal), centre);
     return !(any(greaterThan(outside, vec2(reach))) || depth + reach < frame.near_plane || away);
@@ -81,8 +72,7 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
     uvec4 reaches = pack_place(vec2(0), vec2(-1e4), 0);
     const int texel = int(place * RECORD_TEXELS);
     if (takes_part) {
-        const SurfelRecord record =
-            decode(texelFetch(surfels, int(2 * surfel_index)), texelFetch(surfels, int(2 * surfel_index + 1)));
+        const SurfelRecord record = decode_surfel(first_of(surfel_index), second_of(surfel_index), surfel_index);
         Splat splat;
         SurfelFrame surfel;
         const bool drawn = surfel_splat(record, splat, surfel);

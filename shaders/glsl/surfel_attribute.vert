@@ -7,6 +7,7 @@
 #include "colour.glsl"
 #include "lighting.glsl"
 #include "splat.glsl"
+#include "surfel_record.glsl"
 #include "surfel_frame.glsl"
 #include "surfel_vertex.glsl"
 

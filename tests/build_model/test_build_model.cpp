@@ -4,6 +4,7 @@
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
+#include "preprocess/model_format/point_node.h"
 #include "tests/support/test_files.h"
 
 #include <catch2/catch.hpp>
@@ -166,7 +167,8 @@ TEST_CASE("normal cones hold shading and face normals") {
 TEST_CASE("each patch with surfels is a node of the point tree") {
     const Model model = build(repaired(shapes::bumpy_sphere(20000)), mixed());
     std::set<std::pair<std::uint64_t, std::uint32_t>> ranges;
-    for (const format::PointNode& node : model.point_tree) {
+    const std::vector<format::PointNode> tree = unpack_point_tree(model.point_tree);
+    for (const format::PointNode& node : tree) {
         ranges.insert({node.first_surfel, node.surfel_count});
         CHECK(node.child_count != 1);
     }
@@ -177,7 +179,7 @@ TEST_CASE("each patch with surfels is a node of the point tree") {
         CHECK(ranges.count({patch.first_surfel, patch.surfel_count}) == 1);
     }
     CHECK(patches > 8);
-    CHECK(model.point_tree.front().surfel_count == model.surfels.size());
+    CHECK(tree.front().surfel_count == model.surfels.size());
 }
 
 TEST_CASE("normals that point everywhere make an open cone") {

@@ -2,6 +2,7 @@
 #include "preprocess/build_model/build_model.h"
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/half.h"
+#include "preprocess/model_format/point_node.h"
 #include "tests/cloud/cloud_shapes.h"
 #include "tests/support/test_files.h"
 
@@ -37,11 +38,12 @@ TEST_CASE("a cloud's model is one that the reader accepts, with a surfel for eac
         const Model model = bake(cloud_of(sphere_points(points, 1)));
         const std::vector<std::byte> bytes = serialise_model(view_of(model));
         const ModelView view = parse_model(bytes, "cloud");
-        CHECK(view.surfels.size() == points);
+        CHECK(view.surfels.empty());
+        CHECK(view.packed_surfels.size() == points);
         CHECK(view.info->source_vertices == points);
         CHECK((view.info->flags & format::kPointCloud) != 0);
         CHECK((view.info->flags & format::kTwoSided) != 0);
-        CHECK(view.point_tree.front().surfel_count == points);
+        CHECK(unpack_point_tree(view.point_tree).front().surfel_count == points);
         std::uint64_t in_patches = 0;
         for (const format::Patch& patch : view.patches) {
             CHECK(patch.surfel_count <= 1024);
@@ -62,8 +64,10 @@ TEST_CASE("survey coordinates come back from a model file to the millimetre") {
     }
     const Model model = bake(std::move(cloud));
     std::multiset<double> found;
-    for (const format::Surfel& surfel : model.surfels)
-        found.insert(static_cast<double>(surfel.position[0]) * model.info.source_scale + model.info.source_offset[0]);
+    const ModelView view = view_of(model);
+    for (std::uint64_t i = 0; i < view.surfel_count(); ++i)
+        found.insert(static_cast<double>(view.surfel(i).position[0]) * model.info.source_scale +
+                     model.info.source_offset[0]);
     REQUIRE(found.size() == eastings.size());
     double worst = 0;
     for (auto a = eastings.begin(), b = found.begin(); a != eastings.end(); ++a, ++b)
@@ -76,8 +80,12 @@ TEST_CASE("colours of a cloud reach its surfels") {
     cloud.colours.assign(100, 0xff302010u);
     const Model model = bake(std::move(cloud));
     CHECK((model.info.flags & format::kHasColours) != 0);
-    for (const format::Surfel& surfel : model.surfels)
+    const ModelView view = view_of(model);
+    REQUIRE(view.surfel_count() == 100);
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        const format::Surfel surfel = view.surfel(i);
         CHECK((surfel.colour[0] == 0x10 && surfel.colour[1] == 0x20 && surfel.colour[2] == 0x30));
+    }
 }
 
 TEST_CASE("a cloud's model is the same bytes for any number of threads") {
@@ -96,7 +104,7 @@ TEST_CASE("bake_file tells clouds from meshes and counts what it dropped") {
     CHECK(stats.cloud->duplicate_points == 1);
     CHECK(stats.cloud->points == 4);
     CHECK(stats.cloud->estimated_normals == 4);
-    CHECK(model.surfels.size() == 4);
+    CHECK(model.packed_surfels.size() == 4);
 
     std::ofstream(folder / "mesh.ply")
         << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -123,17 +131,32 @@ TEST_CASE("a damaged point tree is refused") {
         CHECK_THROWS_AS(parse_model(bytes, "cloud"), InputError);
     };
     refuses([](Model& m) { m.info.flags &= ~format::kPointCloud; });
-    refuses([](Model& m) { m.point_tree[0].surfel_count -= 1; });
-    refuses([](Model& m) { m.point_tree[0].first_child = 2; });
-    refuses([](Model& m) { m.point_tree[0].child_count = 9; });
-    refuses([](Model& m) { m.point_tree[1].surfel_count += 1; });
-    refuses([](Model& m) { m.point_tree.back().child_count = 1; });
-    refuses([](Model& m) { m.point_tree.back().first_child = 1; });
-    refuses([](Model& m) { m.point_tree.back().reserved = 1; });
-    refuses([](Model& m) { m.point_tree[0].major = -1; });
-    refuses([](Model& m) { m.point_tree[0].minor = 2 * m.point_tree[0].major; });
-    refuses([](Model& m) { m.point_tree[3].position[1] = std::numeric_limits<float>::quiet_NaN(); });
-    refuses([](Model& m) { m.point_tree[3].sphere_radius = std::numeric_limits<float>::infinity(); });
+    refuses([](Model& m) { m.point_tree[0].below -= 1; });
+    refuses([](Model& m) { m.point_tree[0].below = 128 + 9; });
+    refuses([](Model& m) { m.point_tree[0].below = 128; });
+    refuses([](Model& m) { m.point_tree.back().below = 0; });
+    refuses([](Model& m) { m.point_tree.back().below += 1; });
+    refuses([](Model& m) { m.point_tree.back().below = 128 + 1; });
+    refuses([](Model& m) { m.point_tree[1].place[1] |= 1u << 28; });
+    refuses([](Model& m) { m.point_tree[0].major |= 0x8000; });
+    refuses([](Model& m) { m.point_tree[3].sphere_radius = 0x7c00; });
+    refuses([](Model& m) { m.point_tree[3].major = 0x7e00; });
     refuses([](Model& m) { m.point_tree.pop_back(); });
     refuses([](Model& m) { m.patches[0].merge_root = 1; });
+}
+
+TEST_CASE("damaged packed surfels are refused") {
+    const Model good = bake(cloud_of(sphere_points(2000, 4)));
+    const auto refuses = [&](const auto& damage) {
+        Model model = good;
+        damage(model);
+        const std::vector<std::byte> bytes = serialise_model(view_of(model));
+        CHECK_THROWS_AS(parse_model(bytes, "cloud"), InputError);
+    };
+    refuses([](Model& m) { m.packed_surfels.pop_back(); });
+    refuses([](Model& m) { m.packed_surfels.push_back(m.packed_surfels[0]); });
+    refuses([](Model& m) { m.packed_surfels.clear(); });
+    refuses([](Model& m) { m.packed_surfels[5].shape |= 0x3ffu << 20; });  // radius
+    refuses([](Model& m) { m.patches[0].max_surfel_epsilon /= 4; });
+    refuses([](Model& m) { m.surfels.push_back(view_of(m).surfel(0)); });
 }

@@ -51,7 +51,7 @@ void check_bake(const std::string& name, const Expectation& triangles) {
     REQUIRE(std::filesystem::exists(folder / "out.splice"));
     const ModelFile model(folder / "out.splice");
     CHECK(model.view().info->source_triangles == triangles.value_or(0));
-    if (cloud != kBrokenClouds.end()) CHECK(model.view().surfels.size() == cloud->second);
+    if (cloud != kBrokenClouds.end()) CHECK(model.view().surfel_count() == cloud->second);
     CHECK(run({program("splice-info"), {(folder / "out.splice").string()}}).exit_code == 0);
 }
 

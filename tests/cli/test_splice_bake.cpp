@@ -112,7 +112,7 @@ TEST_CASE("splice-bake --stats writes every promised figure, and they agree with
     CHECK(json.at("patches").at("triangle") == triangle_patches);
     CHECK(json.at("patches").at("surfel") == file.view().patches.size() - triangle_patches);
     CHECK(json.at("output").at("triangles") == info.drawn_triangles);
-    CHECK(json.at("output").at("surfels") == file.view().surfels.size());
+    CHECK(json.at("output").at("surfels") == file.view().surfel_count());
     CHECK(json.at("output").at("file_bytes") == std::filesystem::file_size(folder / "out.splice"));
     CHECK(json.at("output").at("coverage_mean") >= 1.0);
     CHECK(json.at("selection").at("auc") >= 0.0);

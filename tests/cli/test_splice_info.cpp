@@ -48,8 +48,8 @@ TEST_CASE("splice-info --json agrees with the model") {
     CHECK(json.at("file_bytes") == std::filesystem::file_size(path));
     CHECK(json.at("source").at("triangles") == 2304);
     CHECK(json.at("two_sided") == false);
-    CHECK(json.at("drawn").at("surfels") == file.view().surfels.size());
-    CHECK(json.at("sections").size() == 12);
+    CHECK(json.at("drawn").at("surfels") == file.view().surfel_count());
+    CHECK(json.at("sections").size() == 13);
     CHECK(json.at("sections")[1].at("count") == file.view().vertices.size());
     CHECK(json.at("sections")[3].at("element_bytes") == 32);
     CHECK(json.at("levels")[0].at("triangles") == 2304);

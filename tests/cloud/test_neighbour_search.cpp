@@ -91,3 +91,47 @@ TEST_CASE("only the points that are asked for are searched") {
     CHECK(std::equal(all.of(7).begin(), all.of(7).end(), one.of(7).begin()));
     CHECK(one.of(6).front() == kNoNeighbour);
 }
+
+TEST_CASE("the processor's vectors find what plain code finds, bit by bit") {
+    const std::vector<Vec3f> points = unit_cloud(sphere_points(kBlockPoints * 40, 5)).positions;
+    std::vector<PointBlock> blocks(points.size() / kBlockPoints);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        PointBlock& block = blocks[i / kBlockPoints];
+        const std::size_t place = i % kBlockPoints;
+        block.x[place] = points[i].x();
+        block.y[place] = points[i].y();
+        block.z[place] = points[i].z();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float value = points[i][static_cast<Eigen::Index>(axis)];
+            block.low[axis] = place == 0 ? value : std::min(block.low[axis], value);
+            block.high[axis] = place == 0 ? value : std::max(block.high[axis], value);
+        }
+    }
+    for (const unsigned k : {3u, 8u, 16u, 17u, 64u}) {
+        const std::size_t stride = (k + kListStep - 1) / kListStep * kListStep;
+        const auto search = [&](const auto& add) {
+            struct alignas(64) Line {
+                std::array<Neighbour, kListStep> entries;
+            };
+            std::vector<Line> storage(kBlockPoints * stride / kListStep);
+            for (Line& line : storage)
+                line.entries.fill(kNoNeighbour);
+            NearLists lists;
+            lists.k = k;
+            lists.stride = stride;
+            lists.first = storage.front().entries.data();
+            lists.reach.fill(1e28f);
+            lists.reach[3] = -1;  // not asked for
+            for (std::size_t b = 0; b < blocks.size(); ++b)
+                add(blocks[7], blocks[b], static_cast<std::uint32_t>(b * kBlockPoints), b == 7, lists);
+            std::vector<Neighbour> found;
+            for (std::size_t q = 0; q < kBlockPoints; ++q)
+                found.insert(found.end(), lists.first + q * stride, lists.first + q * stride + k);
+            return found;
+        };
+        const auto plain = search(add_near_points_plainly);
+        CHECK(search(add_near_points) == plain);
+        CHECK(plain[3 * k] == kNoNeighbour);
+        CHECK(plain[4 * k] != kNoNeighbour);
+    }
+}

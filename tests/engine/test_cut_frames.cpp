@@ -103,10 +103,10 @@ TEST_CASE("an ellipse covers its own pixels, in both backends") {
     // One node of two disks; what is drawn of it is an ellipse turned by 30 degrees, facing the eye.
     HandmadeModel handmade(true);
     handmade.add_surfels(
-        {{{-0.2f, 0, -2}, {0, 0, 1}, 0.1f, 0.01f, kRed}, {{0.2f, 0, -2}, {0, 0, 1}, 0.1f, 0.01f, kRed}});
+        {{{-0.2f, 0, -0.5f}, {0, 0, 1}, 0.1f, 0.01f, kRed}, {{0.2f, 0, -0.5f}, {0, 0, 1}, 0.1f, 0.01f, kRed}});
     Model model = handmade.model();
     format::PointNode node{};
-    node.position[2] = -2;
+    node.position[2] = -0.5f;
     node.sphere_radius = 0.6f;
     node.normal = encode_octahedral(0, 0, 1);
     const double turn = std::numbers::pi / 6;
@@ -117,7 +117,7 @@ TEST_CASE("an ellipse covers its own pixels, in both backends") {
     node.cone_angle = 1;
     node.extent = encode_extent({0, 0, 0.01f}, node.major);
     node.surfel_count = 2;
-    model.point_tree = {node};
+    model.point_tree = pack_point_tree({&node, 1});
     Renderer renderer({});
     const Scene scene = scene_of(renderer.load(view_of(model)));
     CaptureSettings settings;

@@ -1,10 +1,13 @@
 // Deferred shading: normals and albedos are blended, pixels are lit.
 #include "engine/capture/capture.h"
+#include "preprocess/model_format/tangent_frame.h"
+#include "preprocess/surfel/shading_bend.h"
 #include "tests/engine/handmade_model.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -92,6 +95,31 @@ TEST_CASE("a two-sided sheet is lit from both sides in either shading") {
         const Frame deferred = renderer.render(scene, facing(z, Shading::kDeferred));
         CHECK(worst_difference(deferred, renderer.render(scene, facing(z, Shading::kSurfel))) <= 1);
         CHECK(deferred.rgba[4 * (kSize / 2 * kSize + kSize / 2) + 1] > 150);
+    }
+}
+
+// Its plane is seen from behind, but right beyond a silhouette its near end stands for what is before that.
+TEST_CASE("a two-sided disk beyond a silhouette shows the side that its near end bends to") {
+    Renderer renderer({});
+    const glm::vec3 normal = glm::normalize(glm::vec3(0, 0.937f, -0.35f));
+    HandmadeModel handmade(true);
+    handmade.add_surfels({{{0, 0, 0}, normal, 0.5f, 0.01f}});
+    Model model = handmade.model();
+    const TangentFrame frame = tangents_of({normal.x, normal.y, normal.z});
+    const glm::vec2 nearer = glm::normalize(glm::vec2(frame.s[2], frame.t[2]));
+    for (const float bend : {0.5f, -0.5f}) {
+        const float radius = 1;
+        const std::array<std::int8_t, 5> stored = encode_shading_bend(
+            {0, 0, bend * nearer.x * nearer.x, bend * nearer.x * nearer.y, bend * nearer.y * nearer.y}, radius);
+        std::copy(stored.begin(), stored.end(), model.surfels[0].shading_bend);
+        const Scene scene = scene_of(renderer.load(view_of(model)));
+        for (const Shading shading : {Shading::kSurfel, Shading::kDeferred}) {
+            CaptureSettings settings = facing(3, shading);
+            settings.view = View::kNormals;
+            const int up = renderer.render(scene, settings).rgba[4 * (kSize / 2 * kSize + kSize / 2) + 1];
+            CAPTURE(bend, up);
+            CHECK((bend > 0 ? up > 230 : up < 25));
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 #include "engine/passes/splat_buffers.h"
 #include "engine/scene/draw_list.h"
 #include "preprocess/model_format/model_format.h"
+#include "preprocess/model_format/packed_surfel.h"
 #include "preprocess/model_format/surfel_clip.h"
 #include "preprocess/model_format/surfel_extent.h"
 #include "shaders/deferred_attribute_frag.h"
@@ -237,10 +238,13 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(constant("include/tile.glsl", "SEGMENT_WORDS") == kTileSegmentWords);
     CHECK(constant("include/tile.glsl", "FUSED_GROUPS") == kTileFusedGroups);
     CHECK(constant("tile_cells.comp", "local_size_x") == kTileCellsGroup);
-    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS")) == kSwellStep);
-    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
-    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES")) == kSwellOne);
-    CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    CHECK(static_cast<float>(constant("include/surfel_record.glsl", "EXTENT_POWERS")) == kSwellStep);
+    CHECK(static_cast<float>(constant("include/surfel_record.glsl", "EXTENT_POWERS", 2)) == kEpsilonStep);
+    CHECK(static_cast<float>(constant("include/surfel_record.glsl", "EXTENT_ONES")) == kSwellOne);
+    CHECK(static_cast<float>(constant("include/surfel_record.glsl", "EXTENT_ONES", 2)) == kEpsilonOne);
+    CHECK(static_cast<float>(constant("include/surfel_record.glsl", "PACKED_EPSILON")) == kPackedEpsilon);
+    CHECK(constant("include/surfel_record.glsl", "PACKED_BLOCK") == kPackedBlock);
+    CHECK(constant("include/surfel_record.glsl", "PLACE_STEPS") == kPlaceSteps);
     CHECK(constant("include/surfel_frame.glsl", "CLIP_DIRECTIONS") == kClipDirections);
     CHECK(static_cast<float>(constant("include/surfel_frame.glsl", "CLIP_STEPS")) == kClipSteps);
     const double lean = constant("include/surfel_frame.glsl", "LARGEST_LEAN");

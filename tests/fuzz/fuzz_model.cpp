@@ -1,6 +1,7 @@
 #include "preprocess/model_format/checksum.h"
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/model.h"
+#include "preprocess/model_format/point_node.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -51,9 +52,12 @@ std::uint64_t walk(const ModelView& view) {
         sum += sum_bytes(view.patches.subspan(node.first_patch, node.patch_count));
         sum += sum_bytes(view.octree.subspan(node.first_child, node.child_count));
     }
-    for (const format::PointNode& node : view.point_tree) {
-        sum += sum_bytes(view.surfels.subspan(node.first_surfel, node.surfel_count));
-        sum += sum_bytes(view.point_tree.subspan(node.first_child, node.child_count));
+    const std::vector<format::PointNode> tree = unpack_point_tree(view.point_tree);
+    for (const format::PointNode& node : tree) {
+        for (std::uint64_t i = node.first_surfel; i < node.first_surfel + node.surfel_count; ++i)
+            sum += view.surfel(i).radius;
+        for (std::uint32_t child = 0; child < node.child_count; ++child)
+            sum += tree.at(node.first_child + child).surfel_count;
     }
     return sum;
 }

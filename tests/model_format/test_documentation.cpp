@@ -46,7 +46,8 @@ TEST_CASE("the documented fields fill the structs") {
     CHECK(sizes.at("Merge tree") == sizeof(format::MergeNode));
     CHECK(sizes.at("Materials") == sizeof(format::Material));
     CHECK(sizes.at("Textures") == sizeof(format::Texture));
-    CHECK(sizes.at("Point tree") == sizeof(format::PointNode));
+    CHECK(sizes.at("Point tree") == sizeof(format::PackedPointNode));
+    CHECK(sizes.at("Packed surfels") == sizeof(format::PackedSurfel));
 }
 
 TEST_CASE("the documented sections are the ones that are written") {

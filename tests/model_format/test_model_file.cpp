@@ -33,6 +33,8 @@ void check_equal(const ModelView& a, const ModelView& b) {
     CHECK(same_bytes(a.materials, b.materials));
     CHECK(same_bytes(a.textures, b.textures));
     CHECK(same_bytes(a.texels, b.texels));
+    CHECK(same_bytes(a.point_tree, b.point_tree));
+    CHECK(same_bytes(a.packed_surfels, b.packed_surfels));
 }
 
 std::vector<char> read_all(const std::filesystem::path& path) {

@@ -24,15 +24,20 @@ Tolerance surfel_tolerance(const ModelView& model, const ReferenceView& view, co
     for (const format::Surfel& surfel : model.surfels) {
         const glm::dvec4 eye = view.view * glm::dvec4(surfel.position[0], surfel.position[1], surfel.position[2], 1);
         const glm::dvec4 clip = view.projection * eye;
+        const SurfelExtent extent = decode_extent(surfel.extent, float_from_half(surfel.radius));
         const double radius = float_from_half(surfel.radius) * unit;
-        const double nearest = view.perspective() ? std::max(-eye.z - radius, 1e-6) : 1.0;
-        if (view.perspective() && -eye.z + radius <= 0) continue;  // behind the eye
-        const double radius_px = radius * focal_px / nearest;
-        const double w = view.perspective() ? nearest : clip.w;
+        // What is drawn is the solid over and under the disk: in a sphere of this radius.
+        const double sphere = std::hypot(radius, std::max(extent.above, extent.below) * unit);
+        if (view.perspective() && -eye.z + sphere <= 0) continue;  // behind the eye
+        const double nearest = view.perspective() ? std::max(-eye.z - sphere, 1e-6) : 1.0;
+        const double w = view.perspective() ? std::max(-eye.z, 1e-6) : clip.w;
         const double cx = (clip.x / w + 1) * 0.5 * view.width, cy = (clip.y / w + 1) * 0.5 * view.height;
-        const double depth_tolerance =
-            (2 * epsilon_scale + 1) * decode_extent(surfel.extent, float_from_half(surfel.radius)).epsilon * unit;
-        const double reach = radius_px + 1;
+        const double radius_px = radius * focal_px / nearest;
+        const double depth_tolerance = (2 * epsilon_scale + 1) * extent.epsilon * unit;
+        // Its nearer points lie farther from the middle of the picture.
+        const double off_axis = std::hypot(cx - 0.5 * view.width, cy - 0.5 * view.height);
+        const double spread = view.perspective() ? off_axis * sphere / nearest : 0;
+        const double reach = sphere * focal_px / nearest + spread + 1;
         for (std::int64_t y = std::max<std::int64_t>(0, clamp_pixel(cy - reach, view.height));
              y <= std::min<std::int64_t>(view.height - 1, clamp_pixel(cy + reach, view.height)); ++y)
             for (std::int64_t x = std::max<std::int64_t>(0, clamp_pixel(cx - reach, view.width));

@@ -7,7 +7,7 @@
 
 namespace splice::reference {
 
-/// Largest 2 epsilon + spacing, and largest projected radius, over the surfels whose disk's bounding circle (plus the
+/// Largest 2 epsilon + spacing, and largest projected radius, over the surfels whose solid's bounding circle (plus the
 /// 1 px prefilter) holds the pixel's centre and which lie at the reference's depth there: not the surfels behind it,
 /// which are hidden and may be coarser. A pixel that the reference leaves empty takes every surfel that reaches it.
 /// `epsilon_scale` is the frame's; format::Surfel::epsilon is both the unscaled epsilon and the spacing. Pixels that no

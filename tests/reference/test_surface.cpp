@@ -33,6 +33,7 @@ void check_surface_of(const std::string& name, const IndexedMesh& mesh, const Lo
     const BakedModel baked = bake_for(renderer, mesh, {}, look.representation);
     const Scene scene = scene_of(baked.on_device);
     const std::vector<glm::dvec3> all = view_directions();
+    std::uint64_t inside = 0;  // a plate has no inside from its edge
     for (std::size_t i = 0; i < look.directions; ++i) {
         CaptureSettings settings;
         settings.width = settings.height = look.size;
@@ -40,7 +41,7 @@ void check_surface_of(const std::string& name, const IndexedMesh& mesh, const Lo
             camera_from(scene.bounds(), all[i * all.size() / look.directions], look.size, look.size, look.orthographic);
         const SurfaceCheck check = check_frame(renderer, scene, view_of(baked.model), oracle, mesh, settings);
         INFO(name << " from direction " << i * all.size() / look.directions << " of 26");
-        CHECK(check.report.inside > 0);
+        inside += check.report.inside;
         CHECK(check.report.holes == 0);
         CHECK(check.report.lost == 0);
         CHECK(check.report.grown == 0);
@@ -49,6 +50,7 @@ void check_surface_of(const std::string& name, const IndexedMesh& mesh, const Lo
         if (!check.report.clean())
             write_png(test::artefact(name + "-" + std::to_string(i) + "-holes.png"), check.marked);
     }
+    CHECK(inside > 0);
 }
 
 void check_model(const std::string& file, const Look& look) {

@@ -149,7 +149,7 @@ TEST_CASE("the thesis's spacing is the mean edge over c, clamped", "[surfel]") {
 TEST_CASE("spacing follows curvature, colour and features within its limits", "[surfel]") {
     SamplingOptions options;
     const auto mean_spacing = [&](const IndexedMesh& mesh) {
-        const SpacingField field(mesh, options);
+        const SpacingField field(mesh, find_smooth_neighbours(mesh), options);
         double sum = 0;
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
             const float s = field.at(t, point_at(mesh, t, Vec3f::Constant(1.0f / 3)));
@@ -165,7 +165,7 @@ TEST_CASE("spacing follows curvature, colour and features within its limits", "[
 
     SECTION("a flat sheet has the largest spacing inside and a small one at its border") {
         const IndexedMesh sheet = repaired(shapes::checkerboard(2, 32));
-        const SpacingField field(sheet, options);
+        const SpacingField field(sheet, find_smooth_neighbours(sheet), options);
         float least = 1, most = 0;
         for (std::uint32_t t = 0; t < sheet.triangles.size(); ++t) {
             const Vec3f middle = point_at(sheet, t, Vec3f::Constant(1.0f / 3));
@@ -174,6 +174,16 @@ TEST_CASE("spacing follows curvature, colour and features within its limits", "[
         }
         CHECK(most == Approx(options.h_max));
         CHECK(least < most / 1.5f);
+    }
+    SECTION("it is as wide as a ribbon, down to a limit") {
+        for (const float width : {1.0f / 700, 1.0f / 900, 1.0f / 50000}) {
+            const IndexedMesh ribbon =
+                mesh_of({{0, 0, 0}, {1, 0, 0}, {1, width, 0}, {0, width, 0}}, {{0, 1, 2}, {0, 2, 3}});
+            const SpacingField field(ribbon, find_smooth_neighbours(ribbon), options);
+            for (std::uint32_t t = 0; t < 2; ++t)
+                CHECK(field.at(t, point_at(ribbon, t, Vec3f::Constant(1.0f / 3))) ==
+                      Approx(std::max(width, 1.0f / 1000)).epsilon(0.01));
+        }
     }
     SECTION("colour detail makes it smaller") {
         sphere.corner_colours.assign(3 * sphere.triangles.size(), 0xff808080u);

@@ -39,7 +39,7 @@ TEST_CASE("a mesh is baked on another thread, as it would be on this one") {
     REQUIRE(outcome.scene->models.size() == 1);
     CHECK(outcome.scene->models[0]->baked());
     const PreparedScene here = prepare_scene({folder / "knot.ply"});
-    CHECK(outcome.scene->models[0]->view().surfels.size() == here.models[0]->view().surfels.size());
+    CHECK(outcome.scene->models[0]->view().surfel_count() == here.models[0]->view().surfel_count());
     CHECK(outcome.scene->models[0]->view().info->drawn_triangles == here.models[0]->view().info->drawn_triangles);
     CHECK_FALSE(job.progress().stage.empty());
 }

@@ -232,9 +232,7 @@ void BareSprites::Implementation::record(VkCommandBuffer commands, const FrameSe
     whole.model_to_view = view_matrix(frame.camera);
     const InstanceConstants constants = instance_constants(whole, frame.epsilon_scale);
     vkCmdPushConstants(commands, layout.handle(), kStages, 0, sizeof constants, &constants);
-    const VkBuffer vertices = surfels.handle();
-    const VkDeviceSize zero = 0;
-    vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
+    bind_surfels(commands, surfels.handle(), 0, sizeof(format::Surfel));
     for (const gpu::GraphicsPipeline* pipeline : {&visibility, &attributes}) {
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->handle());
         vkCmdDraw(commands, surfel_count, 1, 0, 0);

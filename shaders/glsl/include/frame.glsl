@@ -58,6 +58,7 @@ const uint INSTANCE_FIRST_SEGMENT = 2;  // compute: nothing was gathered yet
 const uint INSTANCE_LAST_SEGMENT = 4;
 const uint INSTANCE_TILED = 8;    // setup: splats go to the tiles that they touch
 const uint INSTANCE_LISTED = 16;  // setup: and to the list of those that are rasterised
+const uint INSTANCE_PACKED = 32;  // surfels are format::PackedSurfel
 
 layout(push_constant, std430) uniform InstanceConstants {
     vec4 model_to_view[3];  // rows of the affine map from unit-box to view space: uniform scale, rotation, translation
@@ -65,7 +66,7 @@ layout(push_constant, std430) uniform InstanceConstants {
     float epsilon_scale;    // the user's
     uint flags;             // INSTANCE_*
     uint first_patch;       // added to patch numbers, so that instances get different colours
-    uint first_surfel;      // compute: of the bound surfels
+    uint first_surfel;      // of the bound surfels
     uint surfel_count;      // of passes over what setup made of them: how many groups
     uint first_group;       // compute: number of the first of their groups
     uint first_word;        // compute: where in the cells' masks a segment begins

@@ -1,20 +1,7 @@
 // From a surfel of the model file to its splat on screen and its lit colour: shared by every backend. Needs frame.glsl,
-// octahedral.glsl, colour.glsl, lighting.glsl, splat.glsl.
+// octahedral.glsl, colour.glsl, lighting.glsl, splat.glsl, surfel_record.glsl.
 #ifndef SPLICE_SURFEL_FRAME_GLSL
 #define SPLICE_SURFEL_FRAME_GLSL
-
-// format::Surfel, decoded.
-struct SurfelRecord {
-    vec3 position;
-    float radius;  // below 0: an ellipse, engine/scene/ellipse_record.h
-    vec2 normal;  // octahedral
-    vec3 colour;  // sRGB-encoded
-    float bend_0;  // format::Surfel::shading_bend, 1 for the largest
-    vec4 bend_1_4;
-    uint patch_number;
-    uint extent;  // preprocess/model_format/surfel_extent.h
-    uint clip;    // preprocess/model_format/surfel_clip.h; of an ellipse, its axes
-};
 
 bool is_ellipse(SurfelRecord record) { return record.radius < 0; }
 
@@ -34,16 +21,6 @@ struct SurfelFrame {
     float radius;               // along s, world units
     float ratio;                // of the half axis along t to it; 1 for a disk
 };
-
-// kSwellStep, kSwellStep, kEpsilonStep; kSwellOne, kSwellOne, kEpsilonOne
-const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
-const vec3 EXTENT_ONES = vec3(31, 31, 24);
-
-// Above, below, epsilon, in radii.
-vec3 decode_extent(uint bits) {
-    const uvec3 steps = uvec3(bits & 31, bits >> 5 & 31, bits >> 10);
-    return mix(exp2(EXTENT_POWERS * (vec3(steps) - EXTENT_ONES)), vec3(0), equal(steps, uvec3(0)));
-}
 
 // kClipDirections, kClipSteps
 const float CLIP_DIRECTIONS = 64;
@@ -87,11 +64,11 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
         radius *= frame.sample_radius;
     }
     surfel.radius = radius;
-    const vec3 shares = decode_extent(record.extent);
+    const vec2 swell = decode_extent(record.extent).xy;
     return make_splat(centre, normal, surfel.s, surfel.t, radius, surfel.ratio,
-                      VIEW == VIEW_SAMPLES ? vec2(0) : shares.xy,
+                      VIEW == VIEW_SAMPLES ? vec2(0) : swell,
                       VIEW == VIEW_SAMPLES || is_ellipse(record) ? NO_CLIP : decode_clip(record.clip),
-                      shares.z * baked_radius * instance.epsilon_scale, splat);
+                      record.epsilon * baked_radius * instance.epsilon_scale, splat);
 }
 
 // format::kLargestBend
@@ -108,9 +85,6 @@ struct SurfelColour {
 const int LIT_POINTS = 5;
 const vec2 LIT_AT[LIT_POINTS] = vec2[](vec2(0), vec2(1, 0), vec2(-1, 0), vec2(0, 1), vec2(0, -1));
 
-// 1, or -1 where a two-sided surface is seen from behind.
-float side_of(SurfelFrame surfel) { return dot(face_the_eye(surfel.normal, surfel.centre), surfel.normal) < 0 ? -1 : 1; }
-
 vec3 surfel_albedo(SurfelRecord record) {
     const bool finest = VIEW == VIEW_LEVELS && !is_ellipse(record);
     return view_albedo(decode_srgb(record.colour), finest ? 0 : record.patch_number, true);
@@ -121,26 +95,39 @@ struct SurfelNormals {
     vec3 centre, along_u, along_v;
 };
 
+// The shading normal of the disk's side that its plane's normal is on, not unit. `uv`: on the disk, in radii.
+vec3 leaning_normal(SurfelRecord record, SurfelFrame surfel, vec2 uv) {
+    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
+    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
+    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
+    return surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t;
+}
+
+// 1, or -1 where a two-sided surface is seen from behind. Its end nearest the eye decides: of a disk right behind a
+// silhouette that is what shows, and it belongs to the surface before the silhouette if that bends so.
+float side_of(SurfelRecord record, SurfelFrame surfel) {
+    const vec3 to_eye = normalize(towards_eye(surfel.centre));
+    const vec3 normal = normalize(leaning_normal(record, surfel, vec2(dot(surfel.s, to_eye), dot(surfel.t, to_eye))));
+    return dot(face_the_eye(normal, surfel.centre), normal) < 0 ? -1 : 1;
+}
+
 SurfelNormals surfel_normals(SurfelRecord record, SurfelFrame surfel) {
     const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
     const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
     const vec3 centre = surfel.normal + lean.x * surfel.s + lean.y * surfel.t;
-    const float scale = side_of(surfel) * inversesqrt(dot(centre, centre));
+    const float scale = side_of(record, surfel) * inversesqrt(dot(centre, centre));
     return SurfelNormals(scale * centre, scale * (turn.x * surfel.s + turn.y * surfel.t),
                          scale * (turn.y * surfel.s + turn.z * surfel.t));
 }
 
 // `side`: side_of. `uv`: on the disk, in radii.
 vec3 shading_normal(SurfelRecord record, SurfelFrame surfel, float side, vec2 uv) {
-    const vec2 lean = LARGEST_LEAN * vec2(record.bend_0, record.bend_1_4.x);
-    const vec3 turn = LARGEST_TURN * record.bend_1_4.yzw;
-    const vec2 tilt = lean + vec2(dot(turn.xy, uv), dot(turn.yz, uv));
-    return side * normalize(surfel.normal + tilt.x * surfel.s + tilt.y * surfel.t);
+    return side * normalize(leaning_normal(record, surfel, uv));
 }
 
 // All points under one light before the next light: reading a light costs more than using it.
 SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
-    const float side = side_of(surfel);
+    const float side = side_of(record, surfel);
     vec3 normals[LIT_POINTS], positions[LIT_POINTS], diffuse[LIT_POINTS], highlights[LIT_POINTS], lit[LIT_POINTS];
     [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
         normals[p] = shading_normal(record, surfel, side, LIT_AT[p]);

@@ -6,20 +6,14 @@
 
 layout(constant_id = 0) const bool AS_QUADS = false;
 
-layout(location = 0) in vec3 in_position;
-layout(location = 1) in float in_radius;
-layout(location = 2) in vec2 in_normal;   // octahedral
-layout(location = 3) in vec4 in_colour;   // sRGB-encoded
-layout(location = 4) in float in_bend_0;  // format::Surfel::shading_bend, 1 for the largest
-layout(location = 5) in uint in_patch_clip;
-layout(location = 6) in vec4 in_bend_1_4;
-layout(location = 7) in uint in_extent;  // preprocess/model_format/surfel_extent.h
+layout(location = 0) in uvec4 in_first;   // surfel_record.glsl
+layout(location = 1) in uvec4 in_second;
 
 const float SLACK_PX = 0.05;  // rasterisers snap positions to 1/256 pixel or so
 
 SurfelRecord vertex_record() {
-    return SurfelRecord(in_position, in_radius, in_normal, in_colour.rgb, in_bend_0, in_bend_1_4,
-                        in_patch_clip & 0xffff, in_extent, in_patch_clip >> 16);
+    const uint index = instance.first_surfel + (AS_QUADS ? gl_InstanceIndex : gl_VertexIndex);
+    return decode_surfel(in_first, in_second, index);
 }
 
 // Places this vertex so that the primitive covers every pixel of `bounds` and the one that holds the centre.

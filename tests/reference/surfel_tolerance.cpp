@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace splice::reference {
 namespace {
@@ -21,7 +22,8 @@ Tolerance surfel_tolerance(const ModelView& model, const ReferenceView& view, co
     Tolerance result{Raster<float>(view.width, view.height, static_cast<float>(floor * unit)),
                      Raster<float>(view.width, view.height, 0.0f)};
     const double focal_px = 0.5 * view.height * std::abs(view.projection[1][1]);
-    for (const format::Surfel& surfel : model.surfels) {
+    for (std::uint64_t i = 0; i < model.surfel_count(); ++i) {
+        const format::Surfel surfel = model.surfel(i);
         const glm::dvec4 eye = view.view * glm::dvec4(surfel.position[0], surfel.position[1], surfel.position[2], 1);
         const glm::dvec4 clip = view.projection * eye;
         const SurfelExtent extent = decode_extent(surfel.extent, float_from_half(surfel.radius));

@@ -19,8 +19,8 @@ struct DrawCosts {
     friend bool operator==(const DrawCosts&, const DrawCosts&) = default;
 };
 
-/// Of software rasterisation (lavapipe, two cores), surfels by tiles: what `splice-bench costs` printed. Captures use
-/// it on every device, so that they repeat.
+/// Of software rasterisation (lavapipe, two cores), surfels by tiles: a fit of `splice-bench costs` on a busy machine,
+/// times 0.87, as frames were faster when it was idle. Captures use it on every device, so that they repeat.
 inline constexpr DrawCosts kSoftwareCosts{.frame = 500,
                                           .frame_pixel = 0.031,
                                           .triangle = 0.086,

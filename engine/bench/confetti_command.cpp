@@ -133,7 +133,7 @@ class Bench {
         settings.kernel = parse_kernel(command_.kernel).value();
         for (const double tolerance : kTolerances) {
             // The half length of the circle of that area.
-            settings.tau = kSide * std::sqrt(tolerance / std::numbers::pi);
+            settings.tau = 2 * kSide * std::sqrt(tolerance / std::numbers::pi);
             const Measured mean = turn_round(renderer_, scene, settings, command_.frames);
             frames_.add({name, number(100 * tolerance, 2), number(mean.splats, 0), number(mean.select_ms, 1),
                          number(mean.splat_ms, 1), number(mean.normalise_ms, 2), number(mean.total_ms, 1)});

@@ -4,6 +4,7 @@
 #include "engine/bench/bench_quality.h"
 #include "engine/bench/cloud_command.h"
 #include "engine/bench/confetti_command.h"
+#include "engine/bench/costs_command.h"
 #include "engine/bench/frame/frame_command.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
@@ -152,7 +153,14 @@ int run(int argc, char** argv) {
     bench::CloudCommand cloud_command;
     const CLI::App& cloud = bench::add_cloud_command(app, cloud_command);
 
+    bench::CostsCommand costs_command;
+    const CLI::App& costs = bench::add_costs_command(app, costs_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (costs.parsed()) {
+        bench::run_costs_command(costs_command);
+        return 0;
+    }
     if (cloud.parsed()) {
         bench::run_cloud_command(cloud_command);
         return 0;

@@ -58,7 +58,11 @@ struct CaptureSettings {
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
-    double tau = 0;  // pixels by which a level of detail may be off (engine/scene/lod_cut.h); 0: full detail
+    double tau = 0;  // pixels that an ellipse may be long that stands for surfels (engine/scene/lod_cut.h); 0: full
+                     // detail
+    std::optional<double> budget_ms = {};   // tau grows until the costs predict no more (engine/scene/frame_budget.h)
+    DrawCosts costs = kSoftwareCosts;       // by which representations are chosen and budgets kept; see calibrate.h
+    std::optional<Camera> cut_camera = {};  // with tau or budget: from where levels of detail are chosen; else `camera`
     Backend backend = Backend::kSprite;
     std::optional<double> points_below = {};  // pixels: patches whose splats are all at most this wide are drawn as
                                               // points by every backend but sprites; none: as the backend chooses
@@ -79,8 +83,8 @@ struct PassTime {
 struct CutStats {
     double tau = 0;  // pixels; 0: nothing was chosen
     CutStatistics counts;
-    double predicted_ms = 0;  // of the frame, by the cost model (engine/scene/draw_costs.h)
-    double select_ms = 0;     // of the host: culling and choosing; gathering what was chosen
+    std::optional<double> budget_ms = {};  // that tau was chosen for
+    double select_ms = 0;                  // of the host: culling and choosing; gathering what was chosen
     double gather_ms = 0;
 };
 
@@ -99,6 +103,9 @@ struct FrameStats {
     std::vector<PassTime> passes;     // in order of execution
     std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
     std::uint64_t triangles_drawn = 0;
+    DrawLoad load = {};
+    double predicted_ms = 0;  // of the frame, by CaptureSettings::costs
+    DrawCosts costs = {};
     CutStats cut = {};
     PageStats pages = {};
     std::uint64_t covered_pixels = 0;  // at least by half

@@ -111,8 +111,8 @@ std::string view_help() {
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, memory, kernel,
-        points_below;
+        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, budget, memory,
+        kernel, points_below;
     bool one_sided = false, two_sided = false;
 };
 
@@ -144,11 +144,12 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
         command.kernel = parse_kernel(raw.kernel);
         if (!command.kernel)
             throw UsageError(
-                "--kernel: expected gaussian:SIGMA (0.05 to 10), confetti:A,B,N (0.01 to 100, 0.1 to 4, 0.5 to 32) or "
-                "constant, got \"" +
+                "--kernel: expected gaussian:SIGMA (0.05 to 10), confetti:A,B,N (0.01 to 100, 0.1 to 4, 0.5 to 32), "
+                "constant or disk, got \"" +
                 raw.kernel + "\"");
     }
-    if (!raw.tau.empty()) command.tau = parse_in_range(raw.tau, "--tau", 0, 1000, " pixels");
+    if (!raw.tau.empty()) command.tau = parse_in_range(raw.tau, "--tau", 0, kMostTau, " pixels");
+    if (!raw.budget.empty()) command.budget_ms = parse_in_range(raw.budget, "--budget", 0.1, 1e6, " milliseconds");
     if (!raw.memory.empty())
         command.memory =
             static_cast<std::uint64_t>(parse_in_range(raw.memory, "--memory", 1, 1e9, " MB") * 1024 * 1024);
@@ -267,13 +268,20 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
         ->option_text("N");
     app.add_option(
            "--kernel", raw.kernel,
-           "How a splat's weight falls off from its centre; default: a Gaussian that ends at its rim. Published: "
+           "How a splat's weight falls off from its centre; default disk: a Gaussian that ends at its rim. Published: "
            "gaussian:0.3, 0.5, 0.8; confetti:1,1.5,2, 6,1.5,3, 4,1.5,5")
-        ->option_text("gaussian:SIGMA|confetti:A,B,N|constant");
+        ->option_text("gaussian:SIGMA|confetti:A,B,N|constant|disk");
     app.add_option("--tau", raw.tau,
-                   "Level of detail: how many pixels what is drawn may reach beyond its place, 0 to 1000; default 0, "
-                   "full detail")
+                   "Level of detail: how many pixels an ellipse may be long that stands for many surfels, 0 to 1000; "
+                   "default 0, full detail")
         ->option_text("PIXELS");
+    app.add_option("--budget", raw.budget,
+                   "Level of detail for a frame time: the least tau, not below --tau, that a frame is predicted to "
+                   "take no longer with")
+        ->option_text("MS");
+    app.add_flag("--calibrate", command.calibrate,
+                 "Measure what drawing takes on this device, and predict and choose between triangles and surfels by "
+                 "that; default: a table of software rasterisation, so that pictures repeat");
     app.add_option("--memory", raw.memory,
                    "Hold at most so many MB of surfels, 1 to 1e9; the others stay in the model file and are read as "
                    "frames need them. Default: all are held")

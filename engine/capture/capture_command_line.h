@@ -31,7 +31,9 @@ struct CaptureCommand {
     std::optional<double> epsilon_scale;
     std::optional<bool> prefilter;
     std::optional<Shading> shading;
-    std::optional<double> tau;            // pixels
+    std::optional<double> tau;        // pixels
+    std::optional<double> budget_ms;  // of a frame
+    bool calibrate = false;
     std::optional<std::uint64_t> memory;  // bytes of surfels
     std::optional<Kernel> kernel;
     std::optional<std::uint32_t> antialias;  // samples along a pixel's side

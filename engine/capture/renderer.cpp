@@ -5,6 +5,7 @@
 #include "engine/passes/read_back_pass.h"
 #include "engine/render_graph/executor/executor.h"
 #include "engine/scene/cut_store.h"
+#include "engine/scene/frame_budget.h"
 #include "engine/scene/gpu_model.h"
 #include "engine/scene/settle_pages.h"
 #include "engine/vulkan/transfer.h"
@@ -106,6 +107,25 @@ void check_settings(const CaptureSettings& settings, const VkPhysicalDeviceLimit
                          " samples on this device");
 }
 
+// What is drawn, and the tau that chose it, in samples.
+BudgetedDraws select(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
+                     const DrawListOptions& options, std::uint32_t width, std::uint32_t height) {
+    const auto build = [&](const Camera& from, const DrawListOptions& how) {
+        if (settings.budget_ms) return build_within_budget(scene, from, width, height, how, *settings.budget_ms);
+        return BudgetedDraws{how.tau, build_draw_list(scene, from, width, height, how)};
+    };
+    if (!settings.cut_camera) return build(camera, options);
+    // What was chosen from elsewhere may be anywhere, and of any size: too large for a point.
+    DrawListOptions anywhere = options;
+    anywhere.force_quads = true;
+    anywhere.small_px = 0;
+    Camera from = *settings.cut_camera;
+    if (settings.clip_to_scene) fit_clip_planes(from, scene.bounds());
+    BudgetedDraws chosen = build(from, anywhere);
+    look_from(chosen.draws, scene, camera);
+    return chosen;
+}
+
 }  // namespace
 
 void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
@@ -141,11 +161,14 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
         .small_px = backend.small_px,
-        .tau = settings.tau * antialias};
-    DrawList draws = build_draw_list(scene, camera, frame.width, frame.height, list_options);
+        .tau = settings.tau * antialias,
+        .costs = settings.costs};
+    auto [tau, draws] = select(scene, settings, camera, list_options, frame.width, frame.height);
+    tau /= antialias;
     const auto selected = Clock::now();
     const PageStats pages = settle_pages(draws, settings.wait_for_data);
     cut_store.gather(draws, view == View::kLevels);
+    if (list_options.merge_patches) cut_store.gather_triangles(draws);
     const auto gathered = Clock::now();
     passes.data.update(frame, scene.lighting, scene.background);
 
@@ -156,9 +179,14 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
 
     if (!stats) return;
     stats->frame_ms = milliseconds(start, Clock::now());
-    if (settings.tau > 0)
-        stats->cut = {settings.tau, draws.cut, draws.predicted_ms, milliseconds(start, selected),
-                      milliseconds(selected, gathered)};
+    stats->load = draws.load;
+    stats->predicted_ms = draws.predicted_ms;
+    stats->costs = settings.costs;
+    stats->cut = {.tau = tau,
+                  .counts = draws.cut,
+                  .budget_ms = settings.budget_ms,
+                  .select_ms = milliseconds(start, selected),
+                  .gather_ms = milliseconds(selected, gathered)};
     for (const graph::PassTiming& timing : executor.timings())
         stats->passes.push_back({timing.name, timing.gpu_ms, timing.counts});
     for (const BackendShare& share : backend_shares(backend, draws)) {

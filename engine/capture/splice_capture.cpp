@@ -1,4 +1,5 @@
 // splice-capture INPUT -o OUT.png: a picture of a model, a scene or a mesh.
+#include "engine/capture/calibrate.h"
 #include "engine/capture/camera_path.h"
 #include "engine/capture/capture_command_line.h"
 #include "engine/capture/load_scene.h"
@@ -43,8 +44,9 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.prefilter = command.prefilter.value_or(scene.prefilter);
     settings.shading = command.shading.value_or(scene.shading);
     settings.antialias = command.antialias.value_or(scene.antialias);
-    settings.kernel = command.kernel.value_or(settings.kernel);
-    settings.tau = command.tau.value_or(settings.tau);
+    settings.kernel = command.kernel.value_or(scene.kernel);
+    settings.tau = command.tau.value_or(scene.tau);
+    settings.budget_ms = command.budget_ms;
     settings.want_overlap = command.stats.has_value();
     if (command.graph) settings.want_graph = graph::export_format_of(command.graph->string());
     return settings;
@@ -84,6 +86,7 @@ int capture(const CaptureCommand& command) {
     Renderer renderer(command.renderer);
     const LoadedScene loaded = load(command, renderer);
     CaptureSettings settings = settings_of(command, loaded.description);
+    if (command.calibrate) settings.costs = calibrate(renderer, settings.backend).costs;
 
     std::vector<CapturedFile> files;
     const std::vector<Camera> cameras = camera_path(command, loaded.description, loaded.scene.bounds());

@@ -19,6 +19,7 @@ nlohmann::ordered_json json_of(const PassTime& pass) {
 nlohmann::ordered_json json_of(const CutStats& cut) {
     nlohmann::ordered_json json;
     json["tau"] = cut.tau;
+    if (cut.budget_ms) json["budget_ms"] = *cut.budget_ms;
     json["visited"] = cut.counts.visited;
     json["outside_frustum"] = cut.counts.outside_frustum;
     json["facing_away"] = cut.counts.facing_away;
@@ -26,7 +27,6 @@ nlohmann::ordered_json json_of(const CutStats& cut) {
     json["merged_surfels"] = cut.counts.merged_surfels;
     json["surfels"] = cut.counts.surfels;
     json["patches_by_triangles"] = cut.counts.patches_by_triangles;
-    json["predicted_ms"] = cut.predicted_ms;
     json["select_ms"] = cut.select_ms;
     json["gather_ms"] = cut.gather_ms;
     return json;
@@ -56,7 +56,10 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
         json["passes"].push_back(json_of(pass));
     json["surfels_drawn"] = stats.surfels_drawn;
     json["triangles_drawn"] = stats.triangles_drawn;
-    if (stats.cut.tau > 0) json["cut"] = json_of(stats.cut);
+    json["predicted_ms"] = stats.predicted_ms;
+    json["costs_us"] = costs_json(stats.costs);
+    json["costs_us"]["calibrated"] = stats.costs != kSoftwareCosts;
+    if (stats.cut.tau > 0 || stats.cut.budget_ms) json["cut"] = json_of(stats.cut);
     if (stats.pages.limit_bytes != 0) json["pages"] = json_of(stats.pages);
     json["covered_pixels"] = stats.covered_pixels;
     json["overlap_mean"] = stats.overlap_mean;
@@ -64,6 +67,16 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json costs_json(const DrawCosts& costs) {
+    return {{"frame", costs.frame},
+            {"frame_pixel", costs.frame_pixel},
+            {"triangle", costs.triangle},
+            {"triangle_hit", costs.triangle_hit},
+            {"triangle_pixel", costs.triangle_pixel},
+            {"splat", costs.splat},
+            {"splat_pixel", costs.splat_pixel}};
+}
 
 std::string stats_json(const std::vector<CapturedFile>& files) {
     nlohmann::ordered_json json = json_of(files.back().stats);

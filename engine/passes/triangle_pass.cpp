@@ -67,7 +67,7 @@ void TrianglePass::draw(const graph::PassContext& context, const FrameSettings& 
                                         nullptr);
             bound_material = material;
             // The offset takes what would not fit the 32 bits of a draw's first index.
-            vkCmdBindIndexBuffer(commands, instance.model->indices().handle(), range.first * sizeof(std::uint32_t),
+            vkCmdBindIndexBuffer(commands, instance.indices->handle(), range.first * sizeof(std::uint32_t),
                                  VK_INDEX_TYPE_UINT32);
             vkCmdDrawIndexed(commands, range.count, 1, 0, 0, range.patch);
         }

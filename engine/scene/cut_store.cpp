@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstring>
+#include <limits>
 
 namespace splice {
 
@@ -13,6 +15,9 @@ namespace {
 
 // Shorter runs are copied: a draw costs as much as some hundred surfels.
 constexpr std::uint32_t kInPlace = 2048;
+
+// Draws of triangles that are not worth copying what they draw.
+constexpr std::size_t kFewDraws = 16;
 
 // A run and where its records go.
 struct Piece {
@@ -99,6 +104,47 @@ void CutStore::gather(DrawList& draws, bool levels) {
         instance.surfels = &*store_;
         draws.instances.push_back(std::move(instance));
     }
+}
+
+void CutStore::gather_triangles(DrawList& draws) {
+    struct Copy {
+        const std::byte* from;
+        std::uint64_t to, bytes;
+    };
+    constexpr std::uint64_t kIndex = sizeof(std::uint32_t);
+    std::vector<Copy> copies;
+    std::uint64_t bytes = 0;
+    for (InstanceDraws& instance : draws.instances) {
+        const std::span<const std::byte> indices = instance.model->indices().mapped();
+        if (instance.triangles.size() < kFewDraws || indices.empty()) continue;
+        std::stable_sort(instance.triangles.begin(), instance.triangles.end(),
+                         [](const DrawRange& a, const DrawRange& b) { return a.material < b.material; });
+        std::vector<DrawRange> gathered;
+        for (const DrawRange& range : instance.triangles) {
+            constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+            if (gathered.empty() || gathered.back().material != range.material ||
+                gathered.back().count > kMost - range.count)
+                gathered.push_back({.first = bytes / kIndex, .material = range.material});
+            gathered.back().count += range.count;
+            copies.push_back({indices.data() + range.first * kIndex, bytes, range.count * kIndex});
+            bytes += range.count * kIndex;
+        }
+        instance.triangles = std::move(gathered);
+        instance.indices = &indices_;
+    }
+    if (bytes == 0) return;
+    if (!indices_ || indices_.size() < bytes) {
+        indices_ = gpu::Buffer();
+        indices_ = gpu::Buffer(device_, {.size = bytes + bytes / 2,
+                                         .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+                                         .memory = gpu::MemoryUse::upload,
+                                         .name = "cut indices"});
+    }
+    std::byte* const to = indices_.mapped().data();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, copies.size(), 64), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            std::memcpy(to + copies[i].to, copies[i].from, copies[i].bytes);
+    });
 }
 
 }  // namespace splice

@@ -2,6 +2,8 @@
 
 #include "engine/scene/gpu_model.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,6 +58,7 @@ class Culler {
     void cut() {
         const std::vector<double> costs = triangle_costs();
         draws_.cut = cut_points(draws_.model->hierarchy(), cut_view(costs));
+        draws_.load.splats = static_cast<double>(draws_.cut.statistics.ellipses + draws_.cut.statistics.surfels);
         by_triangles_.assign(draws_.model->patches().size(), false);
         for (const std::uint32_t patch : draws_.cut.triangle_patches)
             by_triangles_[patch] = true;
@@ -72,20 +75,33 @@ class Culler {
             if (patch.surfel_count == 0) continue;
             const Extent extent = locate(patch.bounds_min, patch.bounds_max);
             if (extent.containment == Containment::kOutside) continue;
-            const double triangles = level_of(patch, extent.nearest).index_count / 3;
-            if (triangles == 0) continue;  // a cloud's
-            costs[i] = (price.triangle * triangles +
-                        (price.triangle_pixel - price.splat_pixel) * pixels_of(patch, extent.nearest)) /
-                       price.splat;
+            const format::Lod& level = level_of(patch, extent.nearest);
+            if (level.index_count == 0) continue;  // a cloud's
+            const DrawLoad load = load_of_triangles(patch, level, extent.nearest);
+            costs[i] =
+                (price.triangle * load.triangles + price.triangle_hit * load.triangle_hits +
+                 price.triangle_pixel * load.triangle_pixels - price.splat_pixel * pixels_of(patch, extent.nearest)) /
+                price.splat;
         }
         return costs;
     }
 
-    // Of a surface that is turned every way, half of the patch's area as it is seen face on.
+    // Of a surface that is turned every way, half of the patch's area as it is seen face on. A cloud's area is not
+    // known: the mean silhouette of a box is a quarter of its surface.
     double pixels_of(const format::Patch& patch, double nearest) const {
         const double unit = scale_ * draws_.scale / (camera_.orthographic ? 1 : std::max(nearest, camera_.near_plane));
         const double all = 4 * half_x_ * half_y_ * scale_ * scale_;
-        return std::min(0.5 * static_cast<double>(patch.area) * unit * unit, all);
+        const glm::dvec3 size = vector_of(patch.bounds_max) - vector_of(patch.bounds_min);
+        const double of_box = 0.5 * (size.x * size.y + size.y * size.z + size.z * size.x);
+        const double seen = patch.area > 0.0F ? 0.5 * static_cast<double>(patch.area) : of_box;
+        return std::min(seen * unit * unit, all);
+    }
+
+    DrawLoad load_of_triangles(const format::Patch& patch, const format::Lod& level, double nearest) const {
+        // Patches that face away are not left out: half of what is drawn of a closed surface is culled by the device.
+        const double seen = draws_.two_sided ? 1 : 0.5;
+        const double triangles = level.index_count / 3, pixels = seen * pixels_of(patch, nearest);
+        return {.triangles = triangles, .triangle_hits = std::min(seen * triangles, pixels), .triangle_pixels = pixels};
     }
 
     CutView cut_view(std::span<const double> costs) const {
@@ -194,16 +210,20 @@ class Culler {
         const bool triangles = options_.surfels_as_triangles ||
                                patch.representation == format::Representation::kTriangles ||
                                (!by_triangles_.empty() && by_triangles_[index]);
-        if (!(triangles ? options_.draw_triangles : options_.draw_surfels && !cuts())) return;
+        if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return;
         const Extent extent = locate(patch.bounds_min, patch.bounds_max);
         if (extent.containment == Containment::kOutside) return;
         if (triangles) {
             const format::Lod& level = level_of(patch, extent.nearest);
+            draws_.load += load_of_triangles(patch, level, extent.nearest);
             append(draws_.triangles, {level.first_index, level.index_count, patch.material, index},
                    options_.merge_patches);
             return;
         }
-        if (!draws_.two_sided && faces_away(patch)) return;
+        if (patch.surfel_count == 0 || (!draws_.two_sided && faces_away(patch))) return;
+        draws_.load.splat_pixels += pixels_of(patch, extent.nearest);
+        if (cuts()) return;
+        draws_.load.splats += static_cast<double>(patch.surfel_count);
         const double largest = largest_splat(patch, extent.nearest);
         const bool sprite =
             !options_.force_quads && extent.containment == Containment::kInside && largest <= options_.max_point_size;
@@ -242,42 +262,56 @@ class Culler {
     std::vector<bool> by_triangles_;  // surfel patches, where the cut chose
 };
 
+glm::dmat4 model_to_world(const Instance& instance) {
+    const format::ModelInfo& info = instance.model->info();
+    const Transform& transform = instance.transform;
+    glm::dmat4 to_world(transform.rotation * (transform.scale * info.source_scale));
+    to_world[3] =
+        glm::dvec4(transform.rotation * (vector_of(info.source_offset) * transform.scale) + transform.translation, 1);
+    return to_world;
+}
+
 }  // namespace
+
+void look_from(DrawList& draws, const Scene& scene, const Camera& camera) {
+    const glm::dmat4 view = view_matrix(camera);
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        draws.instances[i].model_to_view = view * model_to_world(scene.instances[i]);
+}
 
 DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
                          const DrawListOptions& options) {
     DrawList list;
+    list.instances.resize(scene.instances.size());
     const glm::dmat4 view = view_matrix(camera);
     std::uint32_t first_patch = 0;
-    for (const Instance& instance : scene.instances) {
-        const format::ModelInfo& info = instance.model->info();
-        const Transform& transform = instance.transform;
-        InstanceDraws draws;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        InstanceDraws& draws = list.instances[i];
         draws.model = instance.model.get();
         draws.surfels = &instance.model->surfels();
-        draws.scale = transform.scale * info.source_scale;
-        glm::dmat4 to_world(transform.rotation * draws.scale);
-        to_world[3] = glm::dvec4(
-            transform.rotation * (vector_of(info.source_offset) * transform.scale) + transform.translation, 1);
-        draws.model_to_view = view * to_world;
+        draws.indices = &instance.model->indices();
+        draws.scale = instance.transform.scale * instance.model->info().source_scale;
+        draws.model_to_view = view * model_to_world(instance);
         draws.two_sided =
             options.sides == Sides::kAsBaked ? instance.model->two_sided() : options.sides == Sides::kTwoSided;
         draws.first_patch = first_patch;
-        first_patch += static_cast<std::uint32_t>(instance.model->patches().size());
-        Culler(camera, width, height, options, draws).visit_all();
+        first_patch += static_cast<std::uint32_t>(scene.instances[i].model->patches().size());
+    }
+    tbb::parallel_for(std::size_t{0}, list.instances.size(),
+                      [&](std::size_t i) { Culler(camera, width, height, options, list.instances[i]).visit_all(); });
+    for (const InstanceDraws& draws : list.instances) {
         for (const DrawRange& range : draws.triangles)
             list.triangles += range.count / 3;
         for (const auto* ranges : {&draws.sprites, &draws.quads, &draws.small})
             for (const DrawRange& range : *ranges)
                 list.surfels += range.count;
         list.cut += draws.cut.statistics;
+        list.load += draws.load;
         list.surfels += draws.cut.statistics.ellipses + draws.cut.statistics.surfels;
-        list.instances.push_back(std::move(draws));
     }
-    if (options.tau > 0)
-        list.predicted_ms = 1e-3 * (options.costs.triangle * static_cast<double>(list.triangles) +
-                                    options.costs.splat * static_cast<double>(list.surfels) +
-                                    options.costs.frame_pixel * width * height);
+    list.load.frame_pixels = static_cast<double>(width) * height;
+    list.predicted_ms = predicted_ms(options.costs, list.load);
     return list;
 }
 

@@ -18,6 +18,9 @@
 namespace splice {
 
 class SurfelStore;
+namespace gpu {
+class Buffer;
+}
 
 /// Consecutive indices or surfels of one model.
 struct DrawRange {
@@ -30,6 +33,7 @@ struct DrawRange {
 struct InstanceDraws {
     const GpuModel* model = nullptr;
     const SurfelStore* surfels = nullptr;  // what `sprites` and `quads` are ranges of
+    const gpu::Buffer* indices = nullptr;  // what `triangles` are ranges of
     glm::dmat4 model_to_view{1.0};         // from unit-box units
     double scale = 1;                      // world units per unit-box unit
     bool two_sided = false;
@@ -38,14 +42,16 @@ struct InstanceDraws {
     std::vector<DrawRange> sprites;  // surfels that fit a point: small, and wholly inside the frustum
     std::vector<DrawRange> quads;    // the others
     std::vector<DrawRange> small;    // instead of either: those of DrawListOptions::small_px
-    LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; gather_cuts makes ranges of it
+    LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; CutStore makes ranges of it
+    DrawLoad load = {};
 };
 
 struct DrawList {
     std::vector<InstanceDraws> instances;
     std::uint64_t triangles = 0, surfels = 0;  // ellipses are surfels, too
     CutStatistics cut;                         // of all instances
-    double predicted_ms = 0;                   // with tau: what DrawListOptions::costs make of it
+    DrawLoad load = {};
+    double predicted_ms = 0;  // what DrawListOptions::costs make of it
 };
 
 enum class Sides { kAsBaked, kOneSided, kTwoSided };
@@ -66,8 +72,11 @@ struct DrawListOptions {
     double max_point_size = 255;       // pixels, of the device
     double small_px = 0;               // patches whose splats are all at most this wide go to InstanceDraws::small
     double tau = 0;                    // pixels, of the cut (lod_cut.h); 0: full detail
-    DrawCosts costs = kSoftwareCosts;  // with tau: surfel patches are drawn by their triangles where those cost less
+    DrawCosts costs = kSoftwareCosts;  // with tau, surfel patches are drawn by their triangles where those cost less
 };
+
+/// Moves the eye and keeps what is drawn.
+void look_from(DrawList& draws, const Scene& scene, const Camera& camera);
 
 DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
                          const DrawListOptions& options);

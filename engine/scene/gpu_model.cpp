@@ -66,11 +66,15 @@ gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device) {
 }
 
 GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging)
+    : GpuModel(device, model, paging, unpack_point_tree(model.point_tree)) {}
+
+GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
+                   const std::vector<format::PointNode>& tree)
     : info_(*model.info),
       patches_(model.patches.begin(), model.patches.end()),
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
-      hierarchy_(point_hierarchy(unpack_point_tree(model.point_tree), model.patches, model.info->max_surfel_radius)),
+      hierarchy_(point_hierarchy(tree, model.patches, model.info->max_surfel_radius)),
       surfel_count_(model.surfel_count()),
       paged_(paging.owner && !hierarchy_.empty() && records_of(model).size() > paging.limit),
       surfels_(device, paged_ ? 0 : model.surfel_count(),
@@ -87,15 +91,15 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& pa
     gpu::upload(device, surfels_.buffer(), records);
     if (!paged_ && !hierarchy_.empty() && surfels_.buffer().mapped().empty())
         record_copy_.assign(records.begin(), records.end());
-    make_ellipses(model);
+    make_ellipses(model, tree);
     if (paged_) page(model, paging);
     create_materials(device, model);
 }
 
-void GpuModel::make_ellipses(const ModelView& model) {
-    ellipses_.resize(hierarchy_.nodes.size());
+void GpuModel::make_ellipses(const ModelView& model, const std::vector<format::PointNode>& tree) {
+    ellipses_.resize(tree.size());
     tbb::parallel_for(std::size_t{0}, ellipses_.size(), [&](std::size_t i) {
-        const format::PointNode& node = hierarchy_.nodes[i];
+        const format::PointNode& node = tree[i];
         ellipses_[i] = ellipse_record(node, patch_of(model, node.first_surfel));
     });
 }
@@ -119,10 +123,10 @@ void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
 void GpuModel::page(const ModelView& model, const Paging& paging) {
     std::vector<std::uint32_t> level(hierarchy_.nodes.size(), 1);
     for (std::uint32_t i = 0; i < level.size(); ++i) {
-        const format::PointNode& node = hierarchy_.nodes[i];
-        if (node.child_count == 0) leaves_.push_back({i, level[i]});
-        for (std::uint32_t child = 0; child < node.child_count; ++child)
-            level[node.first_child + child] = level[i] + 1;
+        const std::uint32_t children = hierarchy_.details[i].child_count;
+        if (children == 0) leaves_.push_back({i, level[i]});
+        for (std::uint32_t child = 0; child < children; ++child)
+            level[hierarchy_.nodes[i].first_child + child] = level[i] + 1;
     }
     std::ranges::sort(leaves_, {}, [&](const TreeLeaf& leaf) { return hierarchy_.nodes[leaf.node].first_surfel; });
     const std::span<const std::byte> records = records_of(model);

@@ -65,7 +65,9 @@ class GpuModel {
     Box bounds() const;
 
   private:
-    void make_ellipses(const ModelView& model);
+    GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
+             const std::vector<format::PointNode>& tree);
+    void make_ellipses(const ModelView& model, const std::vector<format::PointNode>& tree);
     void page(const ModelView& model, const Paging& paging);
     void create_materials(gpu::Device& device, const ModelView& model);
 

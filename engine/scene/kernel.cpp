@@ -2,6 +2,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
 #include <vector>
 
 namespace splice {
@@ -63,8 +66,29 @@ double kernel_weight(const Kernel& kernel, double r) {
     return 0;
 }
 
+std::string text_of(const Kernel& kernel) {
+    if (kernel.shape == KernelShape::kDisk) return "disk";
+    if (kernel.shape == KernelShape::kConstant) return "constant";
+    const bool gaussian = kernel.shape == KernelShape::kGaussian;
+    // As few digits as give the same kernel: it is people that read scene files.
+    std::string text;
+    for (int digits = 2; digits <= std::numeric_limits<float>::max_digits10; ++digits) {
+        std::ostringstream out;
+        out << std::setprecision(digits);
+        if (gaussian) {
+            out << "gaussian:" << std::sqrt(kernel.moment);
+        } else {
+            out << "confetti:" << kernel.a << ',' << kernel.support << ',' << kernel.n;
+        }
+        text = out.str();
+        if (parse_kernel(text) == kernel) break;
+    }
+    return text;
+}
+
 std::optional<Kernel> parse_kernel(std::string_view text) {
     Kernel kernel;
+    if (text == "disk") return kernel;
     if (text == "constant") {
         kernel.shape = KernelShape::kConstant;
         kernel.moment = moment_of(kernel);

@@ -14,6 +14,7 @@
 #include <compare>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace splice {
@@ -29,8 +30,12 @@ struct Kernel {
     auto operator<=>(const Kernel&) const = default;
 };
 
-/// sigma in 0.05..10; a in 0.01..100; b in 0.1..4; n in 0.5..32. Nothing where the text is none of these.
+/// "disk", "gaussian:SIGMA", "confetti:A,B,N" or "constant": sigma in 0.05..10; a in 0.01..100; b in 0.1..4; n in
+/// 0.5..32. Nothing where the text is none of these.
 std::optional<Kernel> parse_kernel(std::string_view text);
+
+/// Parsed, it is the same kernel again.
+std::string text_of(const Kernel& kernel);
 
 /// Its weight at r radii.
 double kernel_weight(const Kernel& kernel, double r);

@@ -1,4 +1,5 @@
-// Pajarola et al. 2004, section 6.2. All in the model's unit-box space, where nodes need not be transformed.
+// Pajarola et al. 2004, section 6.2. All in the model's unit-box space, where nodes need not be transformed. A visit
+// takes no division and no angle: what the paper compares is multiplied out.
 #include "engine/scene/lod_cut.h"
 
 #include "engine/scene/splat_reach.h"
@@ -16,22 +17,12 @@ namespace splice {
 
 namespace {
 
-constexpr double kConeSteps = 255;  // format::PointNode::cone_angle
+constexpr std::size_t kConeSteps = 255;  // format::PointNode::cone_angle
 // Subtrees that are walked at once.
 constexpr std::size_t kTasks = 64;
 constexpr int kMostRounds = 8;
 // Surfels that are not worth looking for nodes that face away.
 constexpr std::uint32_t kHardlyAway = 256;
-
-glm::dvec3 position_of(const format::PointNode& node) {
-    return {node.position[0], node.position[1], node.position[2]};
-}
-
-// Not below the cosine of `angle` in [0, pi / 2].
-double cosine_at_most(double angle) {
-    const double square = angle * angle;
-    return 1 - square / 2 + square * square / 24;
-}
 
 struct Visit {
     std::uint32_t node;
@@ -40,9 +31,28 @@ struct Visit {
     bool chosen = false;  // a patch of which surfels are to be drawn
 };
 
-class Walk {
+// How far the axis of a cone may be from the eye's side: the cosine and sine of what is left between the cone's rim and
+// the horizon.
+struct Limit {
+    double cosine = 2, sine = 0;  // never
+};
+
+// Indexed by cone_angle.
+std::array<Limit, kConeSteps + 1> cone_limits() {
+    constexpr double kRounding = 1e-3;  // radians; normals are quantised
+    const double horizon = std::acos(-kHorizon) - kRounding;
+    std::array<Limit, kConeSteps + 1> limits;
+    for (std::size_t step = 0; step <= kConeSteps; ++step) {
+        const double left = horizon - static_cast<double>(step) * (std::numbers::pi / kConeSteps);
+        if (left > 0) limits[step] = {std::cos(left), std::sin(left)};
+    }
+    return limits;
+}
+
+// What all visits of a walk share.
+class Rules {
   public:
-    Walk(const PointHierarchy& hierarchy, const CutView& view) : hierarchy_(hierarchy), view_(view) {
+    Rules(const PointHierarchy& hierarchy, const CutView& view) : hierarchy_(hierarchy), view_(view) {
         const double inverse = 1 / view.scale;
         const auto row = [&](int r) {
             return glm::dvec4(view.model_to_view[0][r], view.model_to_view[1][r], view.model_to_view[2][r],
@@ -60,87 +70,60 @@ class Walk {
         near_ = view.near_plane * inverse;
         slack_ = kPrefilterReach / view.pixel_scale * (view.orthographic ? inverse : 1.0);
         eye_ = -(right.w * glm::dvec3(right) + up.w * glm::dvec3(up) + depth.w * glm::dvec3(depth));
-        pixels_ = view.pixel_scale * (view.orthographic ? view.scale : 1.0);
-        point_stretch_ = view.orthographic ? 1 : 1 + std::max(view.half_x, view.half_y);
+        const double pixels = view.pixel_scale * (view.orthographic ? view.scale : 1.0);
+        longest_ = view.tau / (2 * pixels);
+        const double stretch = view.orthographic ? 1 : 1 + std::max(view.half_x, view.half_y);
+        largest_point_ = (view.max_point_size / 2 - kPrefilterReach) / (pixels * std::numbers::sqrt2 * stretch);
     }
 
-    void run(const Visit& root, LodCut& cut) const {
-        std::vector<Visit> stack{root};
-        while (!stack.empty()) {
-            const Visit visit = stack.back();
-            stack.pop_back();
-            bool inside = false;
-            if (!decide(visit, inside, cut)) continue;
-            const format::PointNode& node = hierarchy_.nodes[visit.node];
-            for (std::uint32_t child = node.child_count; child-- > 0;)
-                stack.push_back({node.first_child + child, visit.level + 1, inside});
-        }
-    }
+    enum class Step { kEnd, kDescend, kChoose };
 
-    // True if the children are to be visited; else what is drawn of the node, if anything, is in the cut.
-    bool decide(const Visit& visit, bool& inside, LodCut& cut) const {
-        const format::PointNode& node = hierarchy_.nodes[visit.node];
+    // What becomes of a node; where it ends the walk, what is drawn of it is in the cut.
+    Step decide(const Visit& visit, bool& inside, LodCut& cut) const {
+        const CutNode& node = hierarchy_.nodes[visit.node];
         ++cut.statistics.visited;
-        const glm::dvec3 centre = position_of(node);
-        const auto radius = static_cast<double>(node.sphere_radius);
+        const glm::dvec3 centre(node.centre[0], node.centre[1], node.centre[2]);
+        const auto radius = static_cast<double>(node.radius);
         const double depth = glm::dot(glm::dvec3(depth_), centre) + depth_.w;
         inside = visit.inside;
-        if (!inside) {
-            if (outside(centre, depth, radius, inside)) {
-                ++cut.statistics.outside_frustum;
-                return false;
-            }
+        if (!inside && outside(centre, depth, radius, inside)) {
+            ++cut.statistics.outside_frustum;
+            return Step::kEnd;
         }
-        if (!view_.two_sided && faces_away(node, centre, radius)) {
+        const glm::dvec3 from_eye = centre - eye_;
+        const double distance2 = glm::dot(from_eye, from_eye);
+        const CutNodeDetail& detail = hierarchy_.details[visit.node];
+        if (!view_.two_sided && faces_away(detail, from_eye, distance2, radius)) {
             ++cut.statistics.facing_away;
-            return false;
+            return Step::kEnd;
         }
-        const double magnification = pixels_at(centre, depth - radius);
-        if (node.surfel_count > 1 && static_cast<double>(extent_of(node)) * magnification <= view_.tau) {
+        const std::uint32_t surfels = hierarchy_.surfel_counts[visit.node];
+        const double nearest = depth - radius;
+        if (small_enough(static_cast<double>(node.extent), nearest, distance2)) {
             ++cut.statistics.ellipses;
-            cut.statistics.merged_surfels += node.surfel_count;
-            append(cut, {visit.node, 1, true, fits_point(inside, radius, depth - radius), visit.level});
-            return false;
+            cut.statistics.merged_surfels += surfels;
+            append(cut, {visit.node, 1, true, fits_point(inside, radius, nearest), visit.level});
+            return Step::kEnd;
         }
-        if (!visit.chosen && !view_.triangle_costs.empty() && hierarchy_.patch[visit.node] != kNoPatch) {
-            choose(visit, cut);
-            return false;
-        }
+        if (detail.is_patch && !visit.chosen && !view_.triangle_costs.empty()) return Step::kChoose;
         const double reach = std::min(radius, static_cast<double>(hierarchy_.largest_radius));
-        const bool fits = fits_point(inside, reach, depth - radius);
+        const bool fits = fits_point(inside, reach, nearest);
         // Where nothing below is small enough from anywhere, either, there is nothing left to decide.
-        const bool full =
-            inside && fits && (view_.two_sided || node.surfel_count <= kHardlyAway) &&
-            static_cast<double>(hierarchy_.finest[visit.node]) * pixels_at_farthest(depth + radius) > view_.tau;
-        if (!full && node.child_count != 0) return true;
-        cut.statistics.surfels += node.surfel_count;
-        append(cut, {node.first_surfel, node.surfel_count, false, fits, 0});
-        return false;
+        const bool full = inside && fits && (view_.two_sided || surfels <= kHardlyAway) &&
+                          static_cast<double>(node.finest) > longest_ * (view_.orthographic ? 1 : depth + radius);
+        if (!full && detail.child_count != 0) return Step::kDescend;
+        cut.statistics.surfels += surfels;
+        append(cut, {node.first_surfel, surfels, false, fits, 0});
+        return Step::kEnd;
     }
+
+    std::uint32_t patch_of(std::uint32_t node) const {
+        return std::lower_bound(hierarchy_.patches.begin(), hierarchy_.patches.end(), std::pair{node, 0U})->second;
+    }
+    double triangle_cost(std::uint32_t patch) const { return view_.triangle_costs[patch]; }
+    const PointHierarchy& hierarchy() const { return hierarchy_; }
 
   private:
-    // Triangles or surfels for the patch of a node.
-    void choose(const Visit& visit, LodCut& cut) const {
-        const std::uint32_t patch = hierarchy_.patch[visit.node];
-        const double cost = view_.triangle_costs[patch];
-        LodCut own;
-        const bool clear = cost < 1;  // surfels would be one at least
-        if (!clear) {
-            run({visit.node, visit.level, visit.inside, true}, own);
-            --own.statistics.visited;  // twice the patch itself
-        }
-        const CutStatistics& counts = own.statistics;
-        if (!clear && cost >= static_cast<double>(counts.ellipses + counts.surfels)) {
-            for (const CutRun& run : own.runs)
-                append(cut, run);
-            cut.statistics += counts;
-            return;
-        }
-        cut.triangle_patches.push_back(patch);
-        cut.statistics.visited += counts.visited;
-        ++cut.statistics.patches_by_triangles;
-    }
-
     bool outside(const glm::dvec3& centre, double depth, double radius, bool& inside) const {
         const double slack = slack_ * (view_.orthographic ? 1 : std::max(depth + radius, 0.0));
         double farthest = near_ - depth;
@@ -154,42 +137,30 @@ class Walk {
         return false;
     }
 
-    // beta + theta + alpha < 90 degrees (figure 11 b), and some for what shaders draw beyond the horizon.
-    bool faces_away(const format::PointNode& node, const glm::dvec3& centre, double radius) const {
-        constexpr double kRounding = 1e-3;  // radians; normals are quantised
-        static const double kLimit = std::acos(-kHorizon) - kRounding;
-        glm::dvec3 away = glm::dvec3(depth_);
-        double alpha = 0;
-        if (!view_.orthographic) {
-            away = centre - eye_;
-            const double distance = glm::length(away);
-            if (distance <= radius) return false;
-            away /= distance;
-            alpha = std::numbers::pi / 2 * radius / distance;  // not below asin
-        }
-        const double limit = kLimit - alpha - node.cone_angle * (std::numbers::pi / kConeSteps);
-        if (limit <= 0) return false;
-        const auto normal = decode_octahedral(node.normal);
-        const double cosine = static_cast<double>(normal[0]) * away.x + static_cast<double>(normal[1]) * away.y +
-                              static_cast<double>(normal[2]) * away.z;
-        return cosine > cosine_at_most(limit);
+    // beta + theta + alpha < 90 degrees (figure 11 b), and some for what shaders draw beyond the horizon: with L what
+    // the cone leaves of that, alpha < L and cos beta > cos(L - alpha), times the distance.
+    bool faces_away(const CutNodeDetail& node, const glm::dvec3& from_eye, double distance2, double radius) const {
+        static const std::array<Limit, kConeSteps + 1> limits = cone_limits();
+        const Limit& limit = limits[node.cone_angle];
+        const glm::dvec3 normal(node.normal[0], node.normal[1], node.normal[2]);
+        if (view_.orthographic) return glm::dot(normal, glm::dvec3(depth_)) > limit.cosine;
+        const double radius2 = radius * radius;
+        if (limit.sine * limit.sine * distance2 <= radius2) return false;
+        const double beyond = glm::dot(normal, from_eye) - limit.sine * radius;
+        return beyond > 0 && beyond * beyond > limit.cosine * limit.cosine * (distance2 - radius2);
     }
 
-    // How many pixels a unit-box unit may take at `centre`, nowhere nearer than `nearest`: the norm of the projection's
-    // derivative, which is largest across the picture's middle.
-    double pixels_at(const glm::dvec3& centre, double nearest) const {
-        if (view_.orthographic) return pixels_;
-        if (nearest <= near_) return std::numeric_limits<double>::infinity();
-        return pixels_ * glm::length(centre - eye_) / (nearest * nearest);
+    // Whether a length takes at most tau pixels wherever around the node it is. A unit takes that many times
+    // distance / nearest^2 there, the norm of the projection's derivative, which is largest across the picture's
+    // middle.
+    bool small_enough(double extent, double nearest, double distance2) const {
+        if (view_.orthographic) return extent <= longest_;
+        const double most = longest_ * nearest * nearest;
+        return nearest > near_ && extent * extent * distance2 <= most * most;
     }
-
-    // How many it takes at least, no farther than `farthest`.
-    double pixels_at_farthest(double farthest) const { return view_.orthographic ? pixels_ : pixels_ / farthest; }
 
     bool fits_point(bool inside, double radius, double nearest) const {
-        if (!inside) return false;
-        const double stretch = view_.orthographic ? 1 : point_stretch_ / nearest;
-        return 2 * (pixels_ * std::numbers::sqrt2 * radius * stretch + kPrefilterReach) <= view_.max_point_size;
+        return inside && radius <= largest_point_ * (view_.orthographic ? 1 : nearest);
     }
 
     static void append(LodCut& cut, const CutRun& run) {
@@ -209,7 +180,70 @@ class Walk {
     glm::dvec4 depth_;                 // of a point: dot(xyz, p) + w, unit-box units
     std::array<glm::dvec4, 4> sides_;  // the same of what it is beyond a side of the frustum
     glm::dvec3 eye_;
-    double near_, slack_, pixels_, point_stretch_;
+    double near_, slack_;
+    double longest_;        // half axis that takes tau pixels at depth 1, or anywhere
+    double largest_point_;  // radius of a disk that fits the largest point there
+};
+
+// One subtree, depth first.
+class Walk {
+  public:
+    Walk(const Rules& rules, LodCut& cut) : rules_(rules), cut_(cut) {}
+
+    void run(const Visit& root) { run(root, std::numeric_limits<double>::infinity()); }
+
+    // Triangles or surfels for the patch of a node.
+    void choose(const Visit& visit) {
+        const std::uint32_t patch = rules_.patch_of(visit.node);
+        const double cost = rules_.triangle_cost(patch);
+        const CutStatistics before = cut_.statistics;
+        const std::size_t runs = cut_.runs.size();
+        const CutRun last = runs == 0 ? CutRun{} : cut_.runs.back();
+        // Surfels would be one at least.
+        const bool within = cost >= 1 && run({visit.node, visit.level, visit.inside, true}, elements(before) + cost);
+        // The patch itself was visited twice.
+        const std::uint64_t visited = cut_.statistics.visited - (cost >= 1 ? 1 : 0);
+        if (!within) {
+            cut_.runs.resize(runs);
+            if (runs != 0) cut_.runs.back() = last;
+            cut_.statistics = before;
+            cut_.triangle_patches.push_back(patch);
+            ++cut_.statistics.patches_by_triangles;
+        }
+        cut_.statistics.visited = visited;
+    }
+
+  private:
+    static double elements(const CutStatistics& counts) {
+        return static_cast<double>(counts.ellipses + counts.surfels);
+    }
+
+    // False if it ended because the cut has more than `most` elements.
+    bool run(const Visit& root, double most) {
+        const std::size_t base = stack_.size();
+        stack_.push_back(root);
+        while (stack_.size() > base) {
+            const Visit visit = stack_.back();
+            stack_.pop_back();
+            bool inside = false;
+            const Rules::Step step = rules_.decide(visit, inside, cut_);
+            if (step == Rules::Step::kChoose) {
+                choose({visit.node, visit.level, inside});
+            } else if (step == Rules::Step::kDescend) {
+                const std::uint32_t first = rules_.hierarchy().nodes[visit.node].first_child;
+                for (std::uint32_t child = rules_.hierarchy().details[visit.node].child_count; child-- > 0;)
+                    stack_.push_back({first + child, visit.level + 1, inside, visit.chosen});
+            } else if (elements(cut_.statistics) > most) {
+                stack_.resize(base);
+                return false;
+            }
+        }
+        return true;
+    }
+
+    const Rules& rules_;
+    LodCut& cut_;
+    std::vector<Visit> stack_;
 };
 
 }  // namespace
@@ -232,17 +266,26 @@ float extent_of(const format::PointNode& node) {
 PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
                                float largest_radius) {
     PointHierarchy hierarchy;
-    hierarchy.nodes.assign(nodes.begin(), nodes.end());
     hierarchy.largest_radius = largest_radius;
-    hierarchy.finest.resize(nodes.size());
+    hierarchy.nodes.resize(nodes.size());
+    hierarchy.details.resize(nodes.size());
+    hierarchy.surfel_counts.resize(nodes.size());
     for (std::size_t i = nodes.size(); i-- > 0;) {
         const format::PointNode& node = nodes[i];
-        float finest = node.surfel_count > 1 ? extent_of(node) : std::numeric_limits<float>::infinity();
+        const float extent = node.surfel_count > 1 ? extent_of(node) : std::numeric_limits<float>::infinity();
+        float finest = extent;
         for (std::uint32_t child = 0; child < node.child_count; ++child)
-            finest = std::min(finest, hierarchy.finest[node.first_child + child]);
-        hierarchy.finest[i] = finest;
+            finest = std::min(finest, hierarchy.nodes[node.first_child + child].finest);
+        hierarchy.nodes[i] = {{node.position[0], node.position[1], node.position[2]},
+                              node.sphere_radius,
+                              extent,
+                              finest,
+                              node.first_child,
+                              node.first_surfel};
+        const std::array<float, 3> normal = decode_octahedral(node.normal);
+        hierarchy.details[i] = {{normal[0], normal[1], normal[2]}, node.cone_angle, node.child_count, false, 0};
+        hierarchy.surfel_counts[i] = node.surfel_count;
     }
-    hierarchy.patch.assign(nodes.size(), kNoPatch);
     // Breadth first, so that of nodes with the same surfels the uppermost is found.
     std::vector<bool> found(patches.size(), false);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -253,7 +296,10 @@ PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::sp
             next->surfel_count != nodes[i].surfel_count)
             continue;
         const auto patch = static_cast<std::size_t>(next - patches.begin());
-        if (!found[patch]) hierarchy.patch[i] = static_cast<std::uint32_t>(patch);
+        if (!found[patch]) {
+            hierarchy.patches.emplace_back(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(patch));
+            hierarchy.details[i].is_patch = true;
+        }
         found[patch] = true;
     }
     return hierarchy;
@@ -262,7 +308,7 @@ PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::sp
 LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view) {
     LodCut cut;
     if (hierarchy.empty()) return cut;
-    const Walk walk(hierarchy, view);
+    const Rules rules(hierarchy, view);
     // What is decided and what is not yet, in order: cuts, each with the visit that comes after it.
     struct Task {
         LodCut before;
@@ -279,17 +325,19 @@ LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view) {
                 continue;
             }
             bool inside = false;
-            const bool descend = walk.decide(task.visit, inside, task.before);
+            const Rules::Step step = rules.decide(task.visit, inside, task.before);
+            if (step == Rules::Step::kChoose)
+                Walk(rules, task.before).choose({task.visit.node, task.visit.level, inside});
             next.push_back({std::move(task.before), {}, false});
-            if (!descend) continue;
-            const format::PointNode& node = hierarchy.nodes[task.visit.node];
-            for (std::uint32_t child = 0; child < node.child_count; ++child)
-                next.push_back({{}, {node.first_child + child, task.visit.level + 1, inside}, true});
+            if (step != Rules::Step::kDescend) continue;
+            const std::uint32_t first = hierarchy.nodes[task.visit.node].first_child;
+            for (std::uint32_t child = 0; child < hierarchy.details[task.visit.node].child_count; ++child)
+                next.push_back({{}, {first + child, task.visit.level + 1, inside}, true});
         }
         tasks = std::move(next);
     }
     tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
-        if (tasks[i].pending) walk.run(tasks[i].visit, tasks[i].before);
+        if (tasks[i].pending) Walk(rules, tasks[i].before).run(tasks[i].visit);
     });
     std::size_t runs = 0;
     for (const Task& task : tasks)

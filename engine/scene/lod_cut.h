@@ -4,9 +4,8 @@
 //
 // With two corrections and one change. A node faces away if its normals do from everywhere in its sphere, not only from
 // its centre; tilt does not shrink a node, whose length across the view stays. What is bounded is not the area of a
-// projected ellipse as a share of the picture but its half length in pixels: nothing is drawn farther than `tau` from
-// the middle of what it stands for, and a long thin ellipse does not pass. At 1 the ellipse's Gaussian (a standard
-// deviation of 0.7 pixels) is hardly wider than the prefilter's (0.55).
+// projected ellipse as a share of the picture but its major diameter in pixels, so that a long thin ellipse does not
+// pass: nothing is drawn farther than `tau` from what it stands for. At 1 a pixel holds an ellipse whole.
 #pragma once
 
 #include "preprocess/model_format/point_node.h"
@@ -15,26 +14,47 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace splice {
 
+/// What a visit reads of a node; half a cache line. Unit-box units.
+struct CutNode {
+    float centre[3];
+    float radius;               // of the sphere
+    float extent;               // half of what it is long, whichever way; infinite for a single surfel
+    float finest;               // the smallest extent in its subtree
+    std::uint32_t first_child;  // below as format::PointNode
+    std::uint32_t first_surfel;
+};
+static_assert(sizeof(CutNode) == 32);
+
+/// What it may read beside.
+struct CutNodeDetail {
+    float normal[3];  // axis of the normal cone
+    std::uint8_t cone_angle;
+    std::uint8_t child_count;
+    bool is_patch;  // stands for a patch, the whole and nothing else
+    std::uint8_t unused;
+};
+static_assert(sizeof(CutNodeDetail) == 16);
+
 /// A model's point tree as the choice reads it.
 struct PointHierarchy {
-    std::vector<format::PointNode> nodes;  // breadth first
-    std::vector<float> finest;             // of each node, the smallest extent (see extent_of) in its subtree
-    std::vector<std::uint32_t> patch;      // the patch that a node stands for, the whole and nothing else; or kNoPatch
-    float largest_radius = 0;              // of the model's surfels, unit-box units
+    std::vector<CutNode> nodes;  // breadth first
+    std::vector<CutNodeDetail> details;
+    std::vector<std::uint32_t> surfel_counts;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> patches;  // of nodes that are patches: node, patch; ascending
+    float largest_radius = 0;                                      // of the model's surfels
 
     bool empty() const { return nodes.empty(); }
 };
 
-inline constexpr std::uint32_t kNoPatch = 0xffffffffu;
-
 PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
                                float largest_radius);
 
-/// What is projected and compared with tau: half of what a node is long, whichever way; unit-box units.
+/// Half of what is projected and compared with tau: what a node is long, whichever way; unit-box units.
 float extent_of(const format::PointNode& node);
 
 /// Where a model is seen from.
@@ -46,7 +66,7 @@ struct CutView {
     double half_x = 1, half_y = 1;  // of the picture, at depth 1 or anywhere
     double near_plane = 1e-3;       // depth, world units
     bool two_sided = false;         // nothing is left out because of its normals
-    double tau = 1;                 // pixels, above 0: see above
+    double tau = 1;                 // pixels, above 0: the longest that an ellipse may be, from end to end
     double max_point_size = 255;    // pixels; see CutRun::fits_point
     // By how much drawing a patch's triangles costs more than drawing no surfel of it, in splats; empty: no patch is
     // drawn by its triangles.

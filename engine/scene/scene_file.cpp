@@ -212,7 +212,8 @@ Background read_background(const JsonValue& value) {
 }
 
 void read_render(const JsonValue& value, SceneDescription& scene) {
-    value.expect_members({"size", "view", "sides", "epsilon_scale", "prefilter", "antialias", "shading"});
+    value.expect_members(
+        {"size", "view", "sides", "epsilon_scale", "prefilter", "antialias", "shading", "tau", "kernel"});
     constexpr std::uint32_t kLargestSide = 1u << 16;
     if (const auto size = value.member("size")) {
         size->array_size(2, 2);
@@ -231,6 +232,12 @@ void read_render(const JsonValue& value, SceneDescription& scene) {
     if (const auto shading = value.member("shading")) scene.shading = choice(*shading, kShadingNames);
     if (const auto antialias = value.member("antialias"))
         scene.antialias = antialias->whole_number(1, kMostSamplesPerSide);
+    if (const auto tau = value.member("tau")) scene.tau = tau->number(0, kMostTau, "a number from 0 to 1000");
+    if (const auto kernel = value.member("kernel")) {
+        const auto known = parse_kernel(kernel->is_string() ? kernel->string() : "");
+        if (!known) kernel->fail("a kernel, such as \"gaussian:0.5\", \"confetti:6,1.5,3\", \"constant\" or \"disk\"");
+        scene.kernel = *known;
+    }
 }
 
 std::size_t line_of(std::string_view text, std::size_t byte) {

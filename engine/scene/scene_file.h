@@ -4,6 +4,7 @@
 
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
+#include "engine/scene/kernel.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shading.h"
 #include "engine/scene/view.h"
@@ -18,6 +19,8 @@
 #include <vector>
 
 namespace splice {
+
+inline constexpr double kMostTau = 1000;  // pixels
 
 /// Of a pixel; more than this no eye tells from this.
 inline constexpr std::uint32_t kMostSamplesPerSide = 8;
@@ -60,6 +63,8 @@ struct SceneDescription {
     bool prefilter = true;
     std::uint32_t antialias = 1;
     Shading shading = Shading::kSurfel;
+    double tau = 0;  // pixels, 0 to kMostTau; see lod_cut.h
+    Kernel kernel = {};
 };
 
 /// Throws InputError("FILE: /path/of/value: expected ..., got ..."), SystemError.

@@ -65,19 +65,20 @@ class Settler {
             auto leaf = std::ranges::lower_bound(model_->leaves(), run.first, {},
                                                  [&](const TreeLeaf& each) { return nodes[each.node].first_surfel; });
             for (; leaf != model_->leaves().end(); ++leaf) {
-                const format::PointNode& node = nodes[leaf->node];
-                if (node.first_surfel >= run.first + run.count) break;
-                if (!is_there(node.first_surfel, node.surfel_count)) {
-                    missing += node.surfel_count;
-                    cut.statistics.surfels -= node.surfel_count;
-                    cut.statistics.merged_surfels += node.surfel_count;
+                const std::uint32_t first = nodes[leaf->node].first_surfel;
+                const std::uint32_t count = model_->hierarchy().surfel_counts[leaf->node];
+                if (first >= run.first + run.count) break;
+                if (!is_there(first, count)) {
+                    missing += count;
+                    cut.statistics.surfels -= count;
+                    cut.statistics.merged_surfels += count;
                     ++cut.statistics.ellipses;
                     runs.push_back({leaf->node, 1, true, false, leaf->level});
                 } else if (!runs.empty() && !runs.back().inner && runs.back().fits_point == run.fits_point &&
-                           runs.back().first + runs.back().count == node.first_surfel) {
-                    runs.back().count += node.surfel_count;
+                           runs.back().first + runs.back().count == first) {
+                    runs.back().count += count;
                 } else {
-                    runs.push_back({node.first_surfel, node.surfel_count, false, run.fits_point, 0});
+                    runs.push_back({first, count, false, run.fits_point, 0});
                 }
             }
         }

@@ -125,7 +125,8 @@ std::string write_scene(const SceneDescription& scene, const std::filesystem::pa
     json["render"] = {{"size", {scene.width, scene.height}}, {"view", name_of(scene.view)},
                       {"sides", name_of(scene.sides)},       {"epsilon_scale", scene.epsilon_scale},
                       {"prefilter", scene.prefilter},        {"shading", name_of(scene.shading)},
-                      {"antialias", scene.antialias}};
+                      {"antialias", scene.antialias},        {"tau", scene.tau},
+                      {"kernel", text_of(scene.kernel)}};
     for (const CameraBookmark& bookmark : scene.bookmarks)
         json["bookmarks"].push_back({{"name", bookmark.name}, {"camera", json_of(bookmark.camera)}});
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

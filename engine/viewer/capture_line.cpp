@@ -52,6 +52,7 @@ std::string capture_line(const std::filesystem::path& input, const CaptureSettin
     line += " --shading " + std::string(name_of(settings.shading));
     line += " --antialias " + std::to_string(settings.antialias);
     if (settings.tau > 0) line += " --tau " + exact(settings.tau);
+    if (settings.kernel != Kernel{}) line += " --kernel " + text_of(settings.kernel);
     if (settings.shown != Shown::kHybrid) line += " --show " + std::string(name_of(settings.shown));
     line += " --background " + quoted(background.transparent ? "transparent" : hex(background.colour));
     if (settings.sides == Sides::kOneSided) line += " --one-sided";

@@ -64,6 +64,16 @@ void draw_performance_section(PanelContext& context) {
     }
     ImGui::Text("%.1f frames/s", state.frames_per_second);
     if (state.stats.overlap_mean > 0) ImGui::Text("overlap %.2f surfels a pixel", state.stats.overlap_mean);
+    const CutStats& cut = state.stats.cut;
+    if (cut.tau > 0) {
+        ImGui::Text("levels chosen in %.2f ms, %s nodes", cut.select_ms + cut.gather_ms,
+                    grouped(cut.counts.visited).c_str());
+        ImGui::Text("outside %s, facing away %s", grouped(cut.counts.outside_frustum).c_str(),
+                    grouped(cut.counts.facing_away).c_str());
+        ImGui::Text("%s ellipses for %s surfels", grouped(cut.counts.ellipses).c_str(),
+                    grouped(cut.counts.merged_surfels).c_str());
+        ImGui::Text("%s patches by triangles", grouped(cut.counts.patches_by_triangles).c_str());
+    }
     ImGui::Text("device memory %s", megabytes(state.device_bytes).c_str());
     ImGui::Text("attachments %s", megabytes(state.attachment_bytes).c_str());
     ImGui::TextWrapped("%s", state.device_name.c_str());

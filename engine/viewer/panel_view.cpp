@@ -39,6 +39,16 @@ bool edit_number(const char* label, double& value, float least, float most, cons
     return true;
 }
 
+// The published ones; scripts and scene files know all.
+void choose_kernel(Kernel& kernel) {
+    const std::string shown = text_of(kernel);
+    if (!ImGui::BeginCombo("Kernel", shown.c_str())) return;
+    for (const char* text : {"disk", "gaussian:0.3", "gaussian:0.5", "gaussian:0.8", "confetti:1,1.5,2",
+                             "confetti:6,1.5,3", "confetti:4,1.5,5", "constant"})
+        if (ImGui::Selectable(text, shown == text)) kernel = parse_kernel(text).value_or(Kernel{});
+    ImGui::EndCombo();
+}
+
 bool edit_vector(const char* label, glm::dvec3& value) {
     glm::vec3 shown(value);
     if (!ImGui::DragFloat3(label, glm::value_ptr(shown), 0.02F, -1e6F, 1e6F, "%.2f")) return false;
@@ -99,8 +109,16 @@ void draw_view_section(PanelContext& context) {
         look.antialias = static_cast<std::uint32_t>(std::clamp(samples, 1, static_cast<int>(kMostSamplesPerSide)));
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Samples along each side of a pixel; one while the camera moves");
     edit_number("Tau", look.tau, 0, 8, "%.1f px");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("By how much levels of detail may be off; 0: full detail");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("How long an ellipse may be that stands for many surfels; 0: full detail");
+    choose_kernel(look.kernel);
+    ImGui::Checkbox("Freeze levels", &state.freeze_cut);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Levels of detail stay as chosen from here, to fly around them");
     ImGui::Checkbox("Coarser while moving", &state.reduce_while_moving);
+    if (state.reduce_while_moving) {
+        edit_number("Budget", state.moving_budget_ms, 5, 200, "%.0f ms");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("What a frame may take while the camera moves");
+    }
     if (!state.scene) return;
     Background& background = state.scene->loaded.scene.background;
     if (edit_colour("Background", background.colour, ImGuiColorEditFlags_Uint8)) {

@@ -137,7 +137,12 @@ void draw_status_bar(PanelContext& context, const Layout& layout) {
     if (state.scene) {
         text = std::to_string(state.drawn_width) + " x " + std::to_string(state.drawn_height);
         const bool reduced = state.stats.frame_ms > 0 && state.looks[0].width > state.drawn_width;
-        if (reduced) text += " while moving";
+        if (state.drawn_coarser) {
+            std::array<char, 32> tau{};
+            std::snprintf(tau.data(), tau.size(), ", tau %.1f px", state.stats.cut.tau);
+            text += tau.data();
+        }
+        if (reduced || state.drawn_coarser) text += " while moving";
         std::array<char, 64> numbers{};
         std::snprintf(numbers.data(), numbers.size(), "   %.1f ms   ", state.stats.frame_ms);
         text += numbers.data() + grouped(state.stats.surfels_drawn) + " surfels, " +

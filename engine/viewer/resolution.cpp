@@ -1,6 +1,8 @@
 #include "engine/viewer/resolution.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace splice {
 
@@ -8,24 +10,41 @@ namespace {
 
 constexpr std::array kShares{1.0, 0.75, 0.5};
 constexpr int kLast = static_cast<int>(kShares.size()) - 1;
-constexpr int kPatience = 10;  // frames
+constexpr int kPatience = 10;                      // frames
+constexpr double kFinest = 1;                      // tau, above 0
+constexpr double kMostCoarser = 2, kFiner = 0.84;  // times tau, a step
+constexpr double kSpare = 0.7;                     // of the target: a frame that leaves room
 
 }  // namespace
 
-double MovingResolution::share() const {
+double MovingDetail::share() const {
     return kShares[static_cast<std::size_t>(step_)];
 }
 
-void MovingResolution::took(double ms) {
-    if (ms > kTargetMs) {
+void MovingDetail::took(double ms, double target_ms) {
+    if (ms > target_ms) {
         fast_frames_ = 0;
-        if (step_ < kLast) ++step_;
+        if (step_ < kLast) {
+            ++step_;
+        } else {
+            // What is drawn goes with the square of tau, and with part of the time.
+            const double factor = std::clamp(ms / target_ms, 1.1, kMostCoarser);
+            tau_ = tau_ == 0 ? kFinest : std::min(tau_ * factor, kCoarsest);
+        }
+        return;
+    }
+    if (tau_ > 0) {
+        fast_frames_ = ms < kSpare * target_ms ? fast_frames_ + 1 : 0;
+        if (fast_frames_ < kPatience) return;
+        fast_frames_ = 0;
+        tau_ *= kFiner;
+        if (tau_ < kFinest) tau_ = 0;
         return;
     }
     if (step_ == 0) return;
     // The time goes with the pixels at most, so the finer step fits if that much more does.
     const double finer = kShares[static_cast<std::size_t>(step_ - 1)] / share();
-    fast_frames_ = ms * finer * finer < kTargetMs ? fast_frames_ + 1 : 0;
+    fast_frames_ = ms * finer * finer < target_ms ? fast_frames_ + 1 : 0;
     if (fast_frames_ < kPatience) return;
     fast_frames_ = 0;
     --step_;

@@ -1,20 +1,27 @@
-// Which resolution the picture is drawn at while the camera moves, so that the window keeps its pace. Pure.
+// How the picture is drawn while the camera moves, so that the window keeps its pace: at which resolution, and with
+// which level of detail. Pure.
 #pragma once
 
 namespace splice {
 
-class MovingResolution {
+class MovingDetail {
   public:
-    /// Frames should take no longer.
+    /// Frames should take no longer, by default.
     static constexpr double kTargetMs = 1000.0 / 40;
 
     /// Share of each side, 1/2 to 1.
     double share() const;
-    /// What a frame of the present share took. Coarser at once, finer only after several fast frames.
-    void took(double ms);
+    /// Pixels of the picture as it is drawn (engine/scene/lod_cut.h), 0 to kCoarsest; 0: full detail.
+    double tau() const { return tau_; }
+    /// What a frame of the present detail took. Coarser at once, fewer pixels first; finer only after several fast
+    /// frames, levels of detail first.
+    void took(double ms, double target_ms = kTargetMs);
+
+    static constexpr double kCoarsest = 32;
 
   private:
     int step_ = 0;
+    double tau_ = 0;
     int fast_frames_ = 0;
 };
 

@@ -28,7 +28,7 @@ struct Action {
     std::string_view expected;
 };
 
-constexpr std::array<Action, 34> kActions{{
+constexpr std::array<Action, 36> kActions{{
     {"move", "nn", "X Y"},
     {"press", "b", "left|middle|right"},
     {"release", "b", "left|middle|right"},
@@ -59,7 +59,9 @@ constexpr std::array<Action, 34> kActions{{
     {"forget", "s", "NAME"},
     {"turntable", "is", "FRAMES FILE.png"},
     {"panels", "s", "on|off"},
+    {"statistics", "s", "FILE.json"},
     {"lose-device", "", "nothing"},
+    {"lose-surface", "", "nothing"},
     {"wait", "", "nothing"},
     {"frames", "i", "COUNT"},
     {"quit", "", "nothing"},

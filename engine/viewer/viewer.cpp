@@ -151,12 +151,15 @@ void Viewer::loop() {
         show_window();
         update_title();
         const double frame = Window::now() - now_;
+        frame_times_.add(1000 * frame);
         if (frame > 0) {
             // A running mean over some ten frames.
             const double rate = 1 / std::max(frame, 1e-4);
             state_.frames_per_second += (rate - state_.frames_per_second) * 0.1;
         }
-        if (state_.reduce_while_moving && moving()) resolution_.took(frame * 1000);
+        if (state_.reduce_while_moving && moving()) moving_detail_.took(frame * 1000, state_.moving_budget_ms);
+        if (state_.first_picture_s == 0 && state_.scene)
+            state_.first_picture_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
     }
 }
 
@@ -225,6 +228,8 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
             look.prefilter = description.prefilter;
             look.shading = description.shading;
             look.antialias = description.antialias;
+            look.tau = description.tau;
+            look.kernel = description.kernel;
         }
     } else if (state_.scene) {
         // The same scene, baked anew: what was set in the window stays.
@@ -288,18 +293,27 @@ void Viewer::draw_pictures() {
     pictures_whole_ = true;
     if (!state_.scene) return;
     const bool reduced = state_.reduce_while_moving && moving();
-    const double share = reduced ? resolution_.share() : 1;
+    const double share = reduced ? moving_detail_.share() : 1;
+    if (!state_.freeze_cut)
+        state_.cut_camera.reset();
+    else if (!state_.cut_camera)
+        state_.cut_camera = state_.camera.camera();
     for (std::size_t i = 0; i < pictures(); ++i) {
         const Viewport viewport = area(i).size;
         CaptureSettings& look = state_.looks[i];
         look.width = viewport.width;
         look.height = viewport.height;
         look.camera = state_.camera.camera();
+        look.cut_camera = state_.cut_camera;
         CaptureSettings settings = look;
         settings.width = shared(viewport.width, share);
         settings.height = shared(viewport.height, share);
-        if (reduced) settings.antialias = 1;
-        pictures_whole_ = pictures_whole_ && share == 1 && settings.antialias == look.antialias;
+        if (reduced) {
+            settings.antialias = 1;
+            settings.tau = std::max(look.tau, moving_detail_.tau());
+        }
+        pictures_whole_ =
+            pictures_whole_ && share == 1 && settings.antialias == look.antialias && settings.tau == look.tau;
         Pane& pane = graphics_->panes[i];
         const bool drawn = pane.update(graphics_->device, *graphics_->renderer, state_.scene->loaded.scene,
                                        state_.scene_revision, settings);
@@ -310,6 +324,7 @@ void Viewer::draw_pictures() {
         state_.attachment_bytes = graphics_->renderer->attachment_bytes();
         state_.drawn_width = settings.width;
         state_.drawn_height = settings.height;
+        state_.drawn_coarser = settings.tau > look.tau;
     }
     state_.device_bytes = graphics_->device.memory().statistics().allocated_bytes;
     state_.device_name = graphics_->device.info().name;

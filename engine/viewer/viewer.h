@@ -2,6 +2,7 @@
 // pictures, the window.
 #pragma once
 
+#include "engine/viewer/frame_times.h"
 #include "engine/viewer/interface.h"
 #include "engine/viewer/pane.h"
 #include "engine/viewer/panels.h"
@@ -14,6 +15,7 @@
 #include "engine/viewer/window.h"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -81,6 +83,7 @@ class Viewer {
     void open(std::vector<std::filesystem::path> paths, bool again);
     void save_scene(const std::filesystem::path& path);
     void go_to(const std::string& bookmark);
+    void write_statistics(const std::filesystem::path& path);
     void report(const std::string& text, bool error);
     CaptureSettings full_settings(std::size_t look) const;
     std::filesystem::path first_input() const;
@@ -92,6 +95,7 @@ class Viewer {
     std::vector<ShownPicture> shown_pictures() const;
     bool moving() const;
 
+    const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
     ViewerCommandLine options_;
     Window window_;
     gpu::Instance instance_;
@@ -107,7 +111,7 @@ class Viewer {
     InputQueue input_;
     std::vector<Command> commands_;
     std::optional<Turntable> turntable_;
-    MovingResolution resolution_;
+    MovingDetail moving_detail_;
     std::size_t dragged_area_ = 0;
     bool dragging_divider_ = false;
     double now_ = 0, moved_at_ = -1e9;  // seconds
@@ -115,6 +119,7 @@ class Viewer {
     bool pictures_whole_ = false;       // drawn, at full resolution
     bool quit_ = false;
     int losses_ = 0;
+    FrameTimes frame_times_;
 };
 
 }  // namespace splice

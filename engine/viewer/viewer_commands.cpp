@@ -6,6 +6,8 @@
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -109,6 +111,8 @@ void Viewer::save_scene(const std::filesystem::path& path) {
     description.prefilter = settings.prefilter;
     description.shading = settings.shading;
     description.antialias = settings.antialias;
+    description.tau = settings.tau;
+    description.kernel = settings.kernel;
     write_text_file(path, write_scene(description, std::filesystem::absolute(path).parent_path()));
     report("Wrote " + path.string(), false);
 }
@@ -117,6 +121,23 @@ void Viewer::go_to(const std::string& name) {
     for (const CameraBookmark& bookmark : state_.scene->loaded.description.bookmarks)
         if (bookmark.name == name) return state_.camera.set_camera(bookmark.camera);
     throw UsageError("no bookmark \"" + name + "\"");
+}
+
+void Viewer::write_statistics(const std::filesystem::path& path) {
+    const CutStats& cut = state_.stats.cut;
+    const nlohmann::ordered_json json{{"first_picture_s", state_.first_picture_s},
+                                      {"frames", frame_times_.count()},
+                                      {"frames_per_second", frame_times_.frames_per_second()},
+                                      {"median_frame_ms", frame_times_.median_ms()},
+                                      {"drawn", {state_.drawn_width, state_.drawn_height}},
+                                      {"picture_ms", state_.stats.frame_ms},
+                                      {"tau", cut.tau},
+                                      {"surfels_drawn", state_.stats.surfels_drawn},
+                                      {"triangles_drawn", state_.stats.triangles_drawn},
+                                      {"select_ms", cut.select_ms},
+                                      {"device_bytes", state_.device_bytes}};
+    write_text_file(path, json.dump(2) + "\n");
+    frame_times_.clear();
 }
 
 void Viewer::set_value(const std::string& name, const std::string& value) {
@@ -143,7 +164,15 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
              if (samples != std::floor(samples)) throw UsageError("set antialias: expected a whole number");
              look.antialias = static_cast<std::uint32_t>(samples);
          }},
-        {"tau", [&] { look.tau = number(0, 1000); }},
+        {"tau", [&] { look.tau = number(0, kMostTau); }},
+        {"budget", [&] { state_.moving_budget_ms = number(1, 1000); }},
+        {"freeze", [&] { state_.freeze_cut = on_or_off("set freeze", value); }},
+        {"kernel",
+         [&] {
+             const std::optional<Kernel> kernel = parse_kernel(value);
+             if (!kernel) throw UsageError("set kernel: there is no kernel \"" + value + "\" (docs/viewer.md)");
+             look.kernel = *kernel;
+         }},
         {"edited", [&] { state_.edited_look = value == "right" && pictures() == 2 ? 1 : 0; }},
         {"wipe", [&] { state_.wipe = number(0, 1); }},
         {"coarser", [&] { state_.reduce_while_moving = on_or_off("set coarser", value); }},
@@ -266,6 +295,8 @@ void Viewer::run_command(const Command& command) {
              turntable_ =
                  Turntable{arguments[1], state_.camera.camera(), static_cast<std::uint32_t>(command.number(0)), 0};
          }},
+        {"statistics", [&] { write_statistics(arguments[0]); }},
+        {"lose-surface", [&] { throw gpu::SurfaceLostError("as the script asked"); }},
         {"lose-device", [&] { throw gpu::DeviceLostError("as the script asked"); }},
         {"quit", [&] { quit_ = true; }},
     };

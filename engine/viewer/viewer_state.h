@@ -8,6 +8,7 @@
 #include "engine/viewer/navigation.h"
 #include "engine/viewer/pass_history.h"
 #include "engine/viewer/picking.h"
+#include "engine/viewer/resolution.h"
 #include "engine/viewer/scene_job.h"
 #include "engine/vulkan/swapchain.h"
 
@@ -49,6 +50,9 @@ struct ViewerState {
     Comparison comparison = Comparison::kOff;
     double wipe = 0.5;  // share of the picture that is left of the line
     bool reduce_while_moving = true;
+    double moving_budget_ms = MovingDetail::kTargetMs;  // of a frame while the camera moves
+    bool freeze_cut = false;                            // levels of detail stay those of `cut_camera`
+    std::optional<Camera> cut_camera;
 
     // The camera.
     CameraController camera;
@@ -71,7 +75,9 @@ struct ViewerState {
     FrameStats stats;
     graph::FramePicture graph;
     std::uint32_t drawn_width = 0, drawn_height = 0;  // of the picture as drawn; smaller than shown while moving
+    bool drawn_coarser = false;                       // with a larger tau than the look's, while moving
     double frames_per_second = 0;
+    double first_picture_s = 0;  // from the start of the program to the window with the first picture
     std::uint64_t device_bytes = 0, attachment_bytes = 0;
     std::string device_name;
 };

@@ -34,6 +34,13 @@ TEST_CASE("kernels have the values that their equations give") {
     CHECK(parse_kernel("confetti:4,1.5,5")->moment > parse_kernel("confetti:6,1.5,3")->moment);
 }
 
+TEST_CASE("a kernel's text is the kernel again, in few digits") {
+    for (const char* name : {"disk", "constant", "gaussian:0.3", "gaussian:0.123", "gaussian:10", "confetti:1,1.5,2",
+                             "confetti:0.01,0.1,32", "confetti:4,1.25,5"}) {
+        CHECK(text_of(parse_kernel(name).value()) == name);
+    }
+}
+
 TEST_CASE("what is no kernel is refused") {
     for (const char* text : {"", "gaussian", "gaussian:", "gaussian:0", "gaussian:nan", "gaussian:1,2", "confetti:1,2",
                              "confetti:1,1.5,2,", "confetti:1,5,2", "constant:1", "box", "gaussian:0.5x"})

@@ -21,6 +21,7 @@ namespace {
 
 struct Points {
     std::vector<format::Surfel> surfels;
+    std::vector<format::PointNode> nodes;
     PointHierarchy hierarchy;
 };
 
@@ -52,7 +53,8 @@ Points bulging_sphere(std::size_t count) {
         largest = std::max(largest, float_from_half(surfel.radius));
         points.surfels.push_back(surfel);
     }
-    points.hierarchy = point_hierarchy(build_point_octree(points.surfels), {}, largest);
+    points.nodes = build_point_octree(points.surfels);
+    points.hierarchy = point_hierarchy(points.nodes, {}, largest);
     return points;
 }
 
@@ -84,7 +86,7 @@ std::vector<int> times_in(const LodCut& cut, const Points& points) {
     for (const CutRun& run : cut.runs) {
         if (!run.inner) add(run.first, run.count);
         for (std::uint32_t i = run.first; run.inner && i < run.first + run.count; ++i)
-            add(points.hierarchy.nodes[i].first_surfel, points.hierarchy.nodes[i].surfel_count);
+            add(points.nodes[i].first_surfel, points.nodes[i].surfel_count);
     }
     return times;
 }
@@ -110,11 +112,10 @@ TEST_CASE("a cut holds every surfel once, in order, whatever tau") {
             CHECK(cut.statistics.merged_surfels + cut.statistics.surfels == 20000);
             std::uint64_t next = 0;
             for (const CutRun& run : cut.runs) {
-                const std::uint32_t first = run.inner ? points.hierarchy.nodes[run.first].first_surfel : run.first;
+                const std::uint32_t first = run.inner ? points.nodes[run.first].first_surfel : run.first;
                 CHECK(first == next);
                 const std::uint32_t last = run.first + run.count - 1;
-                next = run.inner ? points.hierarchy.nodes[last].first_surfel + points.hierarchy.nodes[last].surfel_count
-                                 : last + 1;
+                next = run.inner ? points.nodes[last].first_surfel + points.nodes[last].surfel_count : last + 1;
             }
         }
     CHECK(elements(cut_points(points.hierarchy, view_from(3, 1e6))) == 1);
@@ -165,13 +166,13 @@ TEST_CASE("nothing that faces the eye is left out of a one-sided model") {
     }
 }
 
-TEST_CASE("no ellipse that is chosen reaches farther on the screen than tau, and none above it would do") {
+TEST_CASE("no ellipse that is chosen is longer on the screen than tau, and none above it would do") {
     const Points points = bulging_sphere(20000);
     for (const bool orthographic : {false, true}) {
-        const CutView view = view_from(1.5, 10, orthographic);
+        const CutView view = view_from(1.5, 20, orthographic);
         const LodCut cut = cut_points(points.hierarchy, view);
         double longest = 0, shortest_parent = 1e9;
-        const auto half_length = [&](const format::PointNode& node) {
+        const auto length = [&](const format::PointNode& node) {
             const glm::dvec3 centre = in_view(view, vector_of(node.position));
             const double reach = static_cast<double>(extent_of(node)) * view.scale;
             double result = 0;
@@ -181,19 +182,19 @@ TEST_CASE("no ellipse that is chosen reaches farther on the screen than tau, and
                     const glm::dvec3 p = centre + side * reach * glm::dvec3(std::cos(turn), std::sin(turn), 0);
                     return glm::dvec2(p) * view.pixel_scale / (orthographic ? 1.0 : -p.z);
                 };
-                result = std::max(result, glm::length(project(1) - project(-1)) / 2);
+                result = std::max(result, glm::length(project(1) - project(-1)));
             }
             return result;
         };
-        std::vector<std::uint32_t> parent(points.hierarchy.nodes.size(), 0);
+        std::vector<std::uint32_t> parent(points.nodes.size(), 0);
         for (std::uint32_t i = 0; i < parent.size(); ++i)
-            for (std::uint32_t k = 0; k < points.hierarchy.nodes[i].child_count; ++k)
-                parent[points.hierarchy.nodes[i].first_child + k] = i;
+            for (std::uint32_t k = 0; k < points.nodes[i].child_count; ++k)
+                parent[points.nodes[i].first_child + k] = i;
         REQUIRE(cut.statistics.ellipses > 100);
         for (const CutRun& run : cut.runs)
             for (std::uint32_t i = run.first; run.inner && i < run.first + run.count; ++i) {
-                longest = std::max(longest, half_length(points.hierarchy.nodes[i]));
-                shortest_parent = std::min(shortest_parent, half_length(points.hierarchy.nodes[parent[i]]));
+                longest = std::max(longest, length(points.nodes[i]));
+                shortest_parent = std::min(shortest_parent, length(points.nodes[parent[i]]));
             }
         CAPTURE(orthographic);
         CHECK(longest <= view.tau * (1 + 1e-9));
@@ -272,5 +273,53 @@ TEST_CASE("a node's record holds its ellipse, and hardly more") {
         CHECK(farthest <= 1 + 1e-4);
         CHECK(axes.major <= 1.1 * static_cast<double>(node.major));
         CHECK(axes.minor <= 1.15 * static_cast<double>(node.minor));
+    }
+}
+
+TEST_CASE("a patch is in the cut by its triangles or by its surfels, whichever cost less") {
+    // Of the nodes of one level, each stands for a patch.
+    Points points = bulging_sphere(20000);
+    std::vector<format::Patch> patches;
+    const format::PointNode& root = points.nodes.front();
+    for (std::uint32_t child = 0; child < root.child_count; ++child) {
+        const format::PointNode& node = points.nodes[root.first_child + child];
+        format::Patch patch{};
+        patch.first_surfel = node.first_surfel;
+        patch.surfel_count = node.surfel_count;
+        patches.push_back(patch);
+    }
+    REQUIRE(patches.size() > 2);
+    points.hierarchy = point_hierarchy(points.nodes, patches, points.hierarchy.largest_radius);
+    CutView view = view_from(2, 4);
+    const LodCut surfels = cut_points(points.hierarchy, view);
+    const auto cut_with = [&](const std::vector<double>& costs) {
+        view.triangle_costs = costs;
+        return cut_points(points.hierarchy, view);
+    };
+    std::vector<double> costs(patches.size(), 1e9);
+    CHECK(times_in(cut_with(costs), points) == times_in(surfels, points));
+    CHECK(elements(cut_with(costs)) == elements(surfels));
+    CHECK(cut_with(costs).triangle_patches.empty());
+    costs.assign(patches.size(), 0);
+    CHECK(cut_with(costs).runs.empty());
+    CHECK(cut_with(costs).triangle_patches.size() == patches.size());
+    // One patch at exactly what its surfels cost, and at less: only that patch changes.
+    costs.assign(patches.size(), 1e9);
+    costs[1] = 0;
+    const std::uint64_t own = elements(surfels) - elements(cut_with(costs));
+    REQUIRE(own > 10);
+    costs[1] = static_cast<double>(own);
+    CHECK(elements(cut_with(costs)) == elements(surfels));
+    CHECK(cut_with(costs).triangle_patches.empty());
+    costs[1] = static_cast<double>(own) - 1;
+    const LodCut mixed = cut_with(costs);
+    CHECK(mixed.triangle_patches == std::vector<std::uint32_t>{1});
+    const std::vector<int> times = times_in(mixed, points);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const bool inside = i >= patches[1].first_surfel && i < patches[1].first_surfel + patches[1].surfel_count;
+        if (times[i] != (inside ? 0 : 1)) {
+            CAPTURE(i, inside, times[i]);
+            FAIL("a surfel is not in the cut as often as it should be");
+        }
     }
 }

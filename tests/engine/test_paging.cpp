@@ -91,7 +91,7 @@ void fly_through(std::size_t points, int frames) {
     for (int i = 0; i < frames; ++i) {
         CAPTURE(i);
         settings.camera = cameras.next();
-        settings.tau = 3 * (i % 3);
+        settings.tau = 6 * (i % 3);
         settings.wait_for_data = i % 4 == 0;
         const Frame full = renderer.render(whole, settings), part = renderer.render(paged, settings);
         CHECK(holes(full, part) == 0);

@@ -80,6 +80,10 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
          "scene.json: /render/antialias: expected a whole number from 1 to 8, got 0"},
         {with(R"("render": {"antialias": 9})"),
          "scene.json: /render/antialias: expected a whole number from 1 to 8, got 9"},
+        {with(R"("render": {"tau": -1})"), "scene.json: /render/tau: expected a number from 0 to 1000, got -1"},
+        {with(R"("render": {"kernel": "box"})"),
+         "scene.json: /render/kernel: expected a kernel, such as \"gaussian:0.5\", \"confetti:6,1.5,3\", "
+         "\"constant\" or \"disk\", got \"box\""},
         {with_model(R"("unit_box": 1)"), "scene.json: /models/0/unit_box: expected true or false, got 1"},
         {with_model(R"("representation": "points")"),
          "scene.json: /models/0/representation: expected one of \"hybrid\", \"triangles\", \"surfels\", got "
@@ -153,7 +157,7 @@ TEST_CASE("a scene that says everything is read as it says") {
             {"type": "directional", "direction": [0, -1, 0], "space": "camera", "colour": 0.5}]},
         "background": "#f80",
         "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false,
-                   "shading": "deferred", "antialias": 3}
+                   "shading": "deferred", "antialias": 3, "tau": 1.5, "kernel": "gaussian:0.5"}
     })",
                                                "scene.json", "folder");
     REQUIRE(scene.models.size() == 2);
@@ -189,6 +193,8 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK_FALSE(scene.prefilter);
     CHECK(scene.shading == Shading::kDeferred);
     CHECK(scene.antialias == 3);
+    CHECK(scene.tau == 1.5);
+    CHECK(scene.kernel == parse_kernel("gaussian:0.5"));
 }
 
 TEST_CASE("the scene format's example in the documentation is valid") {

@@ -50,6 +50,40 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
+TEST_CASE("levels of detail: by the command line, else by the scene; budgets and costs are in the statistics") {
+    const TemporaryFolder folder;
+    // Two colours that blend where they meet, by the kernel.
+    HandmadeModel model;
+    auto surfels = sheet({-0.5f, -0.5f, 0}, {0.5f, 0, 0}, {0, 1, 0}, 8, kRed);
+    const auto others = sheet({0, -0.5f, 0}, {0.5f, 0, 0}, {0, 1, 0}, 8, kGreen);
+    surfels.insert(surfels.end(), others.begin(), others.end());
+    model.add_surfels(surfels);
+    model.add_triangles(quad({0.6f, -0.5f, 0}, {0.3f, 0, 0}, {0, 1, 0}, kGreen));
+    write_model(view_of(model.model()), folder / "a.splice");
+    write_text(folder / "scene.json",
+               R"({"models": [{"file": "a.splice"}], "render": {"tau": 3, "kernel": "gaussian:0.8"}})");
+    const auto stats = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"-o", "a.png", "--size", "40x30", "--stats", "a.json"});
+        const Outcome outcome = capture(folder, arguments);
+        CHECK(outcome.err == "");
+        REQUIRE(outcome.exit_code == 0);
+        return nlohmann::json::parse(read_text(folder / "a.json"));
+    };
+    CHECK(stats({"scene.json"})["cut"]["tau"] == 3);
+    const std::string wide = read_text(folder / "a.png");
+    CHECK(stats({"scene.json", "--kernel", "disk", "--tau", "1"})["cut"]["tau"] == 1);
+    CHECK(read_text(folder / "a.png") != wide);
+    const auto plain = stats({"a.splice"});
+    CHECK_FALSE(plain.contains("cut"));
+    CHECK(plain["predicted_ms"] > 0);
+    CHECK(plain["costs_us"]["calibrated"] == false);
+    const auto budget = stats({"a.splice", "--budget", "1000", "--calibrate"});
+    CHECK(budget["cut"]["budget_ms"] == 1000);
+    CHECK(budget["cut"]["tau"] == 0);
+    CHECK(budget["costs_us"]["calibrated"] == true);
+    CHECK(capture(folder, {"a.splice", "-o", "a.png", "--budget", "0"}).exit_code == 2);
+}
+
 TEST_CASE("shading and samples are chosen on the command line, else by the scene") {
     const TemporaryFolder folder;
     write_small_model(folder / "a.splice");

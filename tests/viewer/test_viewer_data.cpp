@@ -2,6 +2,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/viewer/capture_line.h"
 #include "engine/viewer/compile_shader.h"
+#include "engine/viewer/frame_times.h"
 #include "engine/viewer/pass_history.h"
 #include "engine/viewer/resolution.h"
 #include "engine/viewer/settings_file.h"
@@ -16,7 +17,7 @@
 using namespace splice;
 
 TEST_CASE("slow frames coarsen the moving picture at once, down to half a side and no further") {
-    MovingResolution resolution;
+    MovingDetail resolution;
     CHECK(resolution.share() == 1);
     resolution.took(80);
     CHECK(resolution.share() == 0.75);
@@ -26,17 +27,61 @@ TEST_CASE("slow frames coarsen the moving picture at once, down to half a side a
 }
 
 TEST_CASE("fast frames refine it after a while, and only if the finer picture would be fast enough") {
-    MovingResolution resolution;
+    MovingDetail resolution;
     for (int i = 0; i < 4; ++i)
         resolution.took(80);
     for (int i = 0; i < 50; ++i)
-        resolution.took(MovingResolution::kTargetMs * 0.9);
+        resolution.took(MovingDetail::kTargetMs * 0.9);
     CHECK(resolution.share() == 0.5);
     resolution.took(2);
     CHECK(resolution.share() == 0.5);
-    for (int i = 0; i < 50; ++i)
+    for (int i = 0; i < 200; ++i)
         resolution.took(2);
     CHECK(resolution.share() == 1);
+    CHECK(resolution.tau() == 0);
+}
+
+TEST_CASE("where half the resolution is too slow, levels of detail grow coarser until the pace is kept") {
+    MovingDetail detail;
+    // A frame that takes 10 ms and 80 more at full detail, less the coarser it is.
+    const auto frame_ms = [&] {
+        return 10 + 80 * detail.share() * detail.share() / (1 + detail.tau() * detail.tau() / 4);
+    };
+    for (int i = 0; i < 40; ++i)
+        detail.took(frame_ms());
+    CHECK(detail.share() == 0.5);
+    CHECK(detail.tau() >= 1);
+    CHECK(frame_ms() <= MovingDetail::kTargetMs);
+    // And it stays there.
+    for (int i = 0; i < 500; ++i) {
+        detail.took(frame_ms());
+        CHECK(frame_ms() < 1.3 * MovingDetail::kTargetMs);
+    }
+    // A longer budget makes it finer again.
+    for (int i = 0; i < 500; ++i)
+        detail.took(frame_ms(), 200);
+    CHECK(detail.tau() == 0);
+    CHECK(detail.share() == 1);
+    // Nothing is fast enough: as coarse as it gets, no coarser.
+    for (int i = 0; i < 100; ++i)
+        detail.took(1000);
+    CHECK(detail.tau() == MovingDetail::kCoarsest);
+}
+
+TEST_CASE("frame times: a median and a rate of the last thousand") {
+    FrameTimes times;
+    CHECK(times.frames_per_second() == 0);
+    CHECK(times.median_ms() == 0);
+    for (const double ms : {10.0, 30.0, 20.0})
+        times.add(ms);
+    CHECK(times.median_ms() == 20);
+    CHECK(times.frames_per_second() == Approx(50));
+    for (std::size_t i = 0; i < FrameTimes::kMost; ++i)
+        times.add(5);
+    CHECK(times.count() == FrameTimes::kMost);
+    CHECK(times.frames_per_second() == Approx(200));
+    times.clear();
+    CHECK(times.count() == 0);
 }
 
 TEST_CASE("the history of passes is a ring, and forgets passes that no frame has any more") {

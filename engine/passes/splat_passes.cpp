@@ -42,6 +42,7 @@ bool supports_targets(const gpu::Device& device) {
     return accumulation != VK_FORMAT_UNDEFINED && depth != VK_FORMAT_UNDEFINED;
 }
 
+// Between two dispatches of one pass; between passes the graph does it.
 void wait_for_compute(VkCommandBuffer commands) {
     VkMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
@@ -292,7 +293,7 @@ void SplatPasses::add_segments(graph::Graph& graph, FrameTargets& targets, const
     }
     pass.record([this, &settings, stages = std::move(stages), place, variant](const graph::PassContext& context) {
         for (const Stage stage : stages)
-            segment(context, settings, stage, place, variant);
+            segment(context, settings, stage, place, variant, stage != stages.front());
     });
 }
 
@@ -359,7 +360,7 @@ void SplatPasses::set_up(const graph::PassContext& context, const FrameSettings&
 }
 
 void SplatPasses::segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Place place,
-                          const Variant& variant) {
+                          const Variant& variant, bool waits) {
     programs_.bind(context, stage, settings, variant);
     InstanceConstants constants{};
     for (std::uint32_t word = 0; word < buffers_.uniforms().words; word += kTileSegmentWords) {
@@ -368,8 +369,8 @@ void SplatPasses::segment(const graph::PassContext& context, const FrameSettings
             (place.first && word == 0 ? kInstanceFirstSegment : 0u) |
             (place.last && word + kTileSegmentWords >= buffers_.uniforms().words ? kInstanceLastSegment : 0u);
         programs_.push(context.commands, constants);
+        if (waits || word > 0) wait_for_compute(context.commands);
         vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileSegmentedDispatch);
-        wait_for_compute(context.commands);
     }
 }
 

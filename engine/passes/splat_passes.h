@@ -68,8 +68,9 @@ class SplatPasses {
     void write_sums(graph::Pass& pass, FrameTargets& targets, const FrameSettings& settings, bool fresh);
 
     void set_up(const graph::PassContext& context, const FrameSettings& settings, const SplatBatch& batch);
+    /// `waits`: for another stage of the same pass.
     void segment(const graph::PassContext& context, const FrameSettings& settings, Stage stage, Place place,
-                 const Variant& variant);
+                 const Variant& variant, bool waits);
 
     const gpu::Device& device_;
     std::uint64_t most_groups_;

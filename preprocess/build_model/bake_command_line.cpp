@@ -166,9 +166,10 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
         ->group(choice);
 
     const std::string surfels = "Surfels";
-    app.add_option("--sampling", sampling,
-                   "adaptive (default): spacing follows curvature and colour detail; a number C, 0.1..64: the thesis's "
-                   "spacing, a patch's mean edge length / C")
+    app.add_option(
+           "--sampling", sampling,
+           "adaptive (default): spacing follows curvature and vertex colours; a number C, 0.1..64: the thesis's "
+           "spacing, a patch's mean edge length / C")
         ->type_name("adaptive|C")
         ->group(surfels);
     app.add_option("--h-min", options.sampling.h_min,
@@ -183,7 +184,9 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
         ->check(number_between(1e-5, 1))
         ->type_name("LENGTH")
         ->group(surfels);
-    app.add_flag("--no-prune", no_prune, "Keep surfels that others cover")->group(surfels);
+    app.add_flag("--no-prune", no_prune,
+                 "Keep surfels that others cover (--sampling C; adaptive sampling makes none) and do not shrink disks")
+        ->group(surfels);
 
     app.add_option(
            "--neighbours", options.cloud.neighbours,

@@ -144,16 +144,23 @@ void SurfelFrame::declare(graph::Graph& graph) {
     });
 }
 
-std::vector<uint8_t> SurfelFrame::run(graph::Executor& executor, uint32_t frame_slot) {
+void SurfelFrame::record(graph::Executor& executor, VkCommandBuffer commands, uint32_t frame_slot) {
     graph::Graph graph;
     declare(graph);
     graph::Bindings bindings;
     bindings.bind(pixels_handle_, pixels_);
-    device_->submit_and_wait(
-        [&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands, frame_slot); });
+    executor.execute(graph, bindings, commands, frame_slot);
+}
+
+std::vector<uint8_t> SurfelFrame::pixels() const {
     std::vector<uint8_t> bytes(pixels_.size());
     std::memcpy(bytes.data(), pixels_.mapped().data(), bytes.size());
     return bytes;
+}
+
+std::vector<uint8_t> SurfelFrame::run(graph::Executor& executor, uint32_t frame_slot) {
+    device_->submit_and_wait([&](VkCommandBuffer commands) { record(executor, commands, frame_slot); });
+    return pixels();
 }
 
 }  // namespace splice::test

@@ -20,7 +20,10 @@ class SurfelFrame {
 
     /// Left half: weighted red and blue at depth 0.6. Right half: the triangle colour at depth 0.4.
     void declare(graph::Graph& graph);
-    /// Runs the frame and returns RGBA8 pixels.
+    void record(graph::Executor& executor, VkCommandBuffer commands, uint32_t frame_slot);
+    /// RGBA8, of the last frame that is done.
+    std::vector<uint8_t> pixels() const;
+    /// Runs the frame and returns its pixels.
     std::vector<uint8_t> run(graph::Executor& executor, uint32_t frame_slot = 0);
 
     /// Without the passes of the surfels: a view mode that shows the triangles only.

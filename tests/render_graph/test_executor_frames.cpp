@@ -3,8 +3,11 @@
 #include "tests/render_graph/surfel_frame.h"
 
 #include <catch2/catch.hpp>
+#include <vulkan/vulkan_core.h>
 
 #include <array>
+#include <memory>
+#include <vector>
 
 namespace {
 
@@ -131,6 +134,53 @@ TEST_CASE("passes have times under their names, a set for each frame in flight")
         for (const graph::PassTiming& timing : timings)
             CHECK(timing.gpu_ms >= 0);
     }
+    CHECK(gpu.complaints().empty());
+}
+
+// One plan, so the same images: the barriers before their first use are all that keeps the frames apart.
+TEST_CASE("frames that are submitted before those before them are done do not mix") {
+    test::ValidatedDevice gpu;
+    constexpr uint32_t kInFlight = 3;
+    graph::ExecutorOptions options;
+    options.frames_in_flight = kInFlight;
+    graph::Executor executor(gpu.device, options);
+    std::vector<std::unique_ptr<test::SurfelFrame>> frames;
+    std::vector<std::vector<uint8_t>> alone;
+    for (uint32_t slot = 0; slot < kInFlight; ++slot) {
+        frames.push_back(std::make_unique<test::SurfelFrame>(gpu.device, 256, 256));
+        frames.back()->triangle_red = 0.2F + 0.3F * static_cast<float>(slot);
+        alone.push_back(frames.back()->run(executor, slot));
+    }
+    REQUIRE(alone[0] != alone[1]);
+
+    VkCommandPoolCreateInfo pool_info{};
+    pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    pool_info.queueFamilyIndex = gpu.device.queue_family();
+    VkCommandPool pool = VK_NULL_HANDLE;
+    REQUIRE(vkCreateCommandPool(gpu.device.handle(), &pool_info, nullptr, &pool) == VK_SUCCESS);
+    const gpu::UniqueCommandPool owner(gpu.device.handle(), pool);
+    std::array<VkCommandBuffer, kInFlight> commands{};
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = pool;
+    allocate.commandBufferCount = kInFlight;
+    REQUIRE(vkAllocateCommandBuffers(gpu.device.handle(), &allocate, commands.data()) == VK_SUCCESS);
+    for (uint32_t slot = 0; slot < kInFlight; ++slot) {
+        VkCommandBufferBeginInfo begin{};
+        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+        REQUIRE(vkBeginCommandBuffer(commands[slot], &begin) == VK_SUCCESS);
+        frames[slot]->record(executor, commands[slot], slot);
+        REQUIRE(vkEndCommandBuffer(commands[slot]) == VK_SUCCESS);
+        VkSubmitInfo submit{};
+        submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+        submit.commandBufferCount = 1;
+        submit.pCommandBuffers = &commands[slot];
+        REQUIRE(vkQueueSubmit(gpu.device.queue(), 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS);
+    }
+    gpu.device.wait_idle();
+    CHECK(executor.statistics().compilations == 1);
+    for (uint32_t slot = 0; slot < kInFlight; ++slot)
+        CHECK(frames[slot]->pixels() == alone[slot]);
     CHECK(gpu.complaints().empty());
 }
 

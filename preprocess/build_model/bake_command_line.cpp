@@ -166,10 +166,9 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
         ->group(choice);
 
     const std::string surfels = "Surfels";
-    app.add_option(
-           "--sampling", sampling,
-           "adaptive (default): spacing follows curvature and vertex colours; a number C, 0.1..64: the thesis's "
-           "spacing, a patch's mean edge length / C")
+    app.add_option("--sampling", sampling,
+                   "adaptive (default): spacing follows curvature and colour detail; a number C, 0.1..64: the thesis's "
+                   "spacing, a patch's mean edge length / C")
         ->type_name("adaptive|C")
         ->group(surfels);
     app.add_option("--h-min", options.sampling.h_min,

@@ -164,9 +164,9 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
     if (options.thesis_c && !(*options.thesis_c > 0)) throw UsageError("the sampling constant C must be above 0");
     const auto start = Clock::now();
     const SmoothNeighbours neighbours = find_smooth_neighbours(mesh);
-    std::optional<SpacingField> field;
-    if (!options.thesis_c) field.emplace(mesh, neighbours, options);
     const SurfaceColour colour(mesh);
+    std::optional<SpacingField> field;
+    if (!options.thesis_c) field.emplace(mesh, neighbours, colour, options);
     const Inputs inputs{mesh, options, field ? &*field : nullptr, colour, neighbours};
     if (progress) progress("sample", 0.1);
 

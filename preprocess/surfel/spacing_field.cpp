@@ -19,6 +19,7 @@ constexpr float kSagitta = 1.0f / 14000;       // unit-box units
 constexpr float kTurnPerSpacing = 0.5f;        // radians, at most
 constexpr float kColourPerSpacing = 0.12f;     // of the distance from black to one primary, sRGB-encoded, at most
 constexpr float kFinestDetail = 1.0f / 512;    // no curvature or colour asks for less: a pixel of a small picture
+constexpr float kMostTextureSteps = 64;        // along the longest edge of a triangle
 constexpr float kFeatureSpacing = 1.0f / 400;  // disks are cut at edges, but by one line only: corners overhang
 // Where the surface is narrower than such a disk, as slivers at a folded rim are, spacing follows its width: by one
 // line a disk is cut on one side only, and on the other it would stand out.
@@ -49,6 +50,35 @@ float squared_gradient(const Vec3f& e1, const Vec3f& e2, const Vec3f& d1, const 
     return std::max(g, 0.0f) / squared_double_area;
 }
 
+// The same of an image's colours, in the mean over the triangle: looked at on a lattice of steps of two of the finest
+// details.
+float squared_texture_gradient(const SurfaceColour& colour, std::uint32_t t, const Vec3f& e1, const Vec3f& e2,
+                               float squared_double_area) {
+    const float longest = std::max({e1.norm(), e2.norm(), (e2 - e1).norm()});
+    const auto steps = static_cast<int>(std::clamp(std::ceil(longest / (2 * kFinestDetail)), 1.0f, kMostTextureSteps));
+    const float step = 1 / static_cast<float>(steps);
+    const auto sample = [&](int i, int j) {
+        const float u = step * static_cast<float>(i), v = step * static_cast<float>(j);
+        return colour_vector(SurfaceColour::encode(colour.at(t, {1 - u - v, u, v}, kFinestDetail)));
+    };
+    std::vector<Vec3f> row(static_cast<std::size_t>(steps) + 1), next(row.size());
+    for (int i = 0; i <= steps; ++i)
+        next[static_cast<std::size_t>(i)] = sample(i, 0);
+    const float part = step * step;
+    float sum = 0;
+    for (int j = 0; j < steps; ++j) {
+        std::swap(row, next);
+        for (int i = 0; i < steps - j; ++i)
+            next[static_cast<std::size_t>(i)] = sample(i, j + 1);
+        for (int i = 0; i < steps - j; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            sum += squared_gradient(step * e1, step * e2, row[k + 1] - row[k], next[k] - row[k],
+                                    part * part * squared_double_area);
+        }
+    }
+    return sum / static_cast<float>(steps * (steps + 1) / 2);
+}
+
 float distance_to_segment(const Vec3f& p, const Vec3f& a, const Vec3f& b) {
     const Vec3f ab = b - a;
     const float length2 = ab.squaredNorm();
@@ -58,11 +88,12 @@ float distance_to_segment(const Vec3f& p, const Vec3f& a, const Vec3f& b) {
 
 }  // namespace
 
-SpacingField::SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SamplingOptions& options)
+SpacingField::SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SurfaceColour& colour,
+                           const SamplingOptions& options)
     : mesh_(mesh),
       feature_spacing_(
           std::clamp(kFeatureSpacing, static_cast<float>(options.h_min), static_cast<float>(options.h_max))) {
-    measure_detail(options);
+    measure_detail(colour, options);
     grade(vertex_spacing_);
     find_features();
     grade(feature_distance_);
@@ -72,7 +103,7 @@ SpacingField::SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neig
         width = width < feature_spacing_ ? std::max(width, narrowest) : std::numeric_limits<float>::max();
 }
 
-void SpacingField::measure_detail(const SamplingOptions& options) {
+void SpacingField::measure_detail(const SurfaceColour& colour, const SamplingOptions& options) {
     const std::size_t vertex_count = mesh_.positions.size();
     std::vector<float> turn(vertex_count, 0.0f), change(vertex_count, 0.0f), area(vertex_count, 0.0f);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -85,7 +116,9 @@ void SpacingField::measure_detail(const SamplingOptions& options) {
         const Vec3f* n = &mesh_.corner_normals[3 * t];
         const float turn2 = squared_gradient(e1, e2, n[1] - n[0], n[2] - n[0], squared_double_area);
         float change2 = 0;
-        if (!mesh_.corner_colours.empty()) {
+        if (colour.textured(static_cast<std::uint32_t>(t))) {
+            change2 = squared_texture_gradient(colour, static_cast<std::uint32_t>(t), e1, e2, squared_double_area);
+        } else if (!mesh_.corner_colours.empty()) {
             const std::uint32_t* c = &mesh_.corner_colours[3 * t];
             const Vec3f c0 = colour_vector(c[0]);
             change2 = squared_gradient(e1, e2, colour_vector(c[1]) - c0, colour_vector(c[2]) - c0, squared_double_area);

@@ -4,6 +4,7 @@
 
 #include "preprocess/mesh/indexed_mesh.h"
 #include "preprocess/surfel/sheet.h"
+#include "preprocess/surfel/surfel_colour.h"
 #include "preprocess/surfel/surfel_set.h"
 
 #include <cstdint>
@@ -17,7 +18,8 @@ namespace splice {
 class SpacingField {
   public:
     /// The adaptive field; reads options.h_min and options.h_max.
-    SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SamplingOptions& options);
+    SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SurfaceColour& colour,
+                 const SamplingOptions& options);
 
     /// Distance wanted between neighbouring surfels at a point of triangle `t`, unit-box units.
     float at(std::uint32_t t, const Vec3f& point) const;
@@ -27,7 +29,7 @@ class SpacingField {
 
   private:
     void find_features();
-    void measure_detail(const SamplingOptions& options);
+    void measure_detail(const SurfaceColour& colour, const SamplingOptions& options);
     void grade(std::vector<float>& values) const;
 
     const IndexedMesh& mesh_;

@@ -70,6 +70,13 @@ bool SurfaceColour::varies(std::uint32_t material) const {
            !mesh_.corner_uvs.empty();
 }
 
+bool SurfaceColour::textured(std::uint32_t triangle) const {
+    const std::uint32_t material = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[triangle];
+    if (material >= mesh_.materials.size() || mesh_.corner_uvs.empty()) return false;
+    const auto image = mesh_.materials[material].image;
+    return image < mesh_.images.size() && mesh_.images[image].width > 0 && mesh_.images[image].height > 0;
+}
+
 LinearColour SurfaceColour::at(std::uint32_t triangle, const Vec3f& barycentric, float footprint) const {
     const std::uint32_t material = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[triangle];
     LinearColour colour = LinearColour::Ones();

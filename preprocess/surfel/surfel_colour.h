@@ -21,6 +21,9 @@ class SurfaceColour {
     /// True when the colour varies inside the material, so that averaging is worth the time.
     bool varies(std::uint32_t material) const;
 
+    /// True when an image colours the triangle.
+    bool textured(std::uint32_t triangle) const;
+
     /// Colour of a triangle's point, textures (which wrap) filtered over a square of side `footprint` (unit-box units).
     LinearColour at(std::uint32_t triangle, const Vec3f& barycentric, float footprint) const;
 

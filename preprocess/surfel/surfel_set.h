@@ -37,7 +37,7 @@ struct SurfelSet {
 
 struct SamplingOptions {
     std::optional<double> thesis_c;  // set: the thesis's spacing h = (mean edge length of the patch) / c (3.3.2)
-                                     // unset: spacing adapts to curvature and vertex colours, see spacing_field.h
+                                     // unset: spacing adapts to curvature and colour detail, see spacing_field.h
     double h_min = 1.0 / 4096;       // spacing limits, unit-box units; adaptive spacing goes down to 1/512 by itself
     double h_max = 1.0 / 48;
     bool prune = true;  // false: every candidate is kept where it was found, at the radius it has before shrinking

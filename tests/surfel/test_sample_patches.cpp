@@ -149,7 +149,7 @@ TEST_CASE("the thesis's spacing is the mean edge over c, clamped", "[surfel]") {
 TEST_CASE("spacing follows curvature, colour and features within its limits", "[surfel]") {
     SamplingOptions options;
     const auto mean_spacing = [&](const IndexedMesh& mesh) {
-        const SpacingField field(mesh, find_smooth_neighbours(mesh), options);
+        const SpacingField field(mesh, find_smooth_neighbours(mesh), SurfaceColour(mesh), options);
         double sum = 0;
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
             const float s = field.at(t, point_at(mesh, t, Vec3f::Constant(1.0f / 3)));
@@ -165,7 +165,7 @@ TEST_CASE("spacing follows curvature, colour and features within its limits", "[
 
     SECTION("a flat sheet has the largest spacing inside and a small one at its border") {
         const IndexedMesh sheet = repaired(shapes::checkerboard(2, 32));
-        const SpacingField field(sheet, find_smooth_neighbours(sheet), options);
+        const SpacingField field(sheet, find_smooth_neighbours(sheet), SurfaceColour(sheet), options);
         float least = 1, most = 0;
         for (std::uint32_t t = 0; t < sheet.triangles.size(); ++t) {
             const Vec3f middle = point_at(sheet, t, Vec3f::Constant(1.0f / 3));
@@ -179,7 +179,7 @@ TEST_CASE("spacing follows curvature, colour and features within its limits", "[
         for (const float width : {1.0f / 700, 1.0f / 900, 1.0f / 50000}) {
             const IndexedMesh ribbon =
                 mesh_of({{0, 0, 0}, {1, 0, 0}, {1, width, 0}, {0, width, 0}}, {{0, 1, 2}, {0, 2, 3}});
-            const SpacingField field(ribbon, find_smooth_neighbours(ribbon), options);
+            const SpacingField field(ribbon, find_smooth_neighbours(ribbon), SurfaceColour(ribbon), options);
             for (std::uint32_t t = 0; t < 2; ++t)
                 CHECK(field.at(t, point_at(ribbon, t, Vec3f::Constant(1.0f / 3))) ==
                       Approx(std::max(width, 1.0f / 1000)).epsilon(0.01));
@@ -193,6 +193,28 @@ TEST_CASE("spacing follows curvature, colour and features within its limits", "[
             sphere.corner_colours[c] = std::fmod(std::abs(p.x()) * 20, 2.0f) < 1 ? 0xff000000u : 0xffffffffu;
         }
         CHECK(mean_spacing(sphere) < 0.7 * smooth);
+    }
+    SECTION("so does the detail of an image, where it is") {
+        // Grey but for stripes in the upper half.
+        constexpr std::uint32_t kSide = 64;
+        sphere.images = {{kSide, kSide, std::vector<std::uint8_t>(std::size_t{4} * kSide * kSide, 0x80)}};
+        sphere.materials = {{"painted", kWhite, 0}};
+        for (std::size_t c = 0; c < 3 * sphere.triangles.size(); ++c) {
+            const Vec3f& p = sphere.positions[sphere.triangles[c / 3][c % 3]];
+            sphere.corner_uvs.push_back({0.5f + 0.9f * p.x(), 0.5f + 0.9f * p.y()});
+        }
+        CHECK(mean_spacing(sphere) == Approx(smooth));
+        for (std::uint32_t i = 0; i < kSide * kSide / 2; ++i)
+            for (std::uint32_t k = 0; k < 3; ++k)
+                sphere.images[0].rgba[4 * i + k] = i / 4 % 2 == 0 ? 0 : 255;
+        CHECK(mean_spacing(sphere) < 0.8 * smooth);
+        const SpacingField field(sphere, find_smooth_neighbours(sphere), SurfaceColour(sphere), options);
+        double striped = 0, grey = 0;
+        for (std::uint32_t t = 0; t < sphere.triangles.size(); ++t) {
+            const Vec3f middle = point_at(sphere, t, Vec3f::Constant(1.0f / 3));
+            (middle.y() < 0 ? striped : grey) += field.at(t, middle);
+        }
+        CHECK(striped < 0.5 * grey);
     }
     SECTION("the limits hold") {
         options.h_min = options.h_max = 0.03;

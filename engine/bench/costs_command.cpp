@@ -3,6 +3,7 @@
 #include "engine/bench/table.h"
 #include "engine/capture/calibrate.h"
 #include "engine/capture/load_scene.h"
+#include "engine/capture/picture_size.h"
 #include "engine/capture/stats_json.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
@@ -12,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <cstdio>
+#include <tuple>
 
 namespace splice::bench {
 
@@ -104,12 +105,7 @@ const CLI::App& add_costs_command(CLI::App& app, CostsCommand& command) {
 void run_costs_command(const CostsCommand& command) {
     if (!command.json.empty()) check_output_path(command.json);
     CaptureSettings settings;
-    unsigned width = 0, height = 0;
-    char rest = 0;
-    if (std::sscanf(command.size.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
-        throw UsageError("--size: expected WIDTHxHEIGHT in pixels, got " + command.size);
-    settings.width = width;
-    settings.height = height;
+    std::tie(settings.width, settings.height) = parse_size(command.size);
     const std::optional<Backend> backend = find_named(kBackendNames, command.backend);
     if (!backend) throw UsageError("--backend: expected one of " + listed(kBackendNames) + ", got " + command.backend);
     settings.backend = *backend;

@@ -8,6 +8,7 @@
 #include "engine/bench/frame/frame_command.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
+#include "engine/capture/picture_size.h"
 #include "engine/scene/scene_file.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/model_format/atomic_file.h"
@@ -17,8 +18,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
+#include <tuple>
 
 namespace {
 using namespace splice;
@@ -68,16 +69,6 @@ void add_quality(CLI::App& command, CommandLine& line, std::size_t directions) {
                     "Share of the triangles that the bake keeps as triangles, 0..1")
         ->check(CLI::Range(0.0, 1.0));
     command.add_option("--pictures", line.quality.pictures, "Write frames, reference and errors to this folder");
-}
-
-/// WIDTHxHEIGHT into the options.
-void parse_size(CommandLine& line) {
-    unsigned width = 0, height = 0;
-    char rest = 0;
-    if (std::sscanf(line.size.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
-        throw UsageError("--size: expected WIDTHxHEIGHT in pixels, got " + line.size);
-    line.quality.width = width;
-    line.quality.height = height;
 }
 
 ForcedRepresentation representation_of_name(const std::string& name) {
@@ -191,7 +182,7 @@ int run(int argc, char** argv) {
         report = bench::bench_bake(bench::bench_models(line.files, line.folder), line.bake);
     } else {
         CommandLine& chosen = capture.parsed() ? capture_line : holes_line;
-        parse_size(chosen);
+        std::tie(chosen.quality.width, chosen.quality.height) = parse_size(chosen.size);
         SamplingOptions& sampling = chosen.quality.bake.sampling;
         sampling.h_min = std::min(sampling.h_min, sampling.h_max);
         report_file = chosen.json;

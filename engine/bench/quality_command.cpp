@@ -6,6 +6,7 @@
 #include "engine/bench/table.h"
 #include "engine/bench/world_mesh.h"
 #include "engine/capture/camera_path.h"
+#include "engine/capture/picture_size.h"
 #include "engine/scene/gpu_model.h"
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/model_format/atomic_file.h"
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
 
 namespace splice::bench {
 namespace {
@@ -171,12 +173,7 @@ nlohmann::json json_of(const Measured& measured) {
 
 CaptureSettings settings_of(const QualityCommand& command) {
     CaptureSettings settings;
-    unsigned width = 0, height = 0;
-    char rest = 0;
-    if (std::sscanf(command.size.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
-        throw UsageError("--size: expected WIDTHxHEIGHT in pixels, got " + command.size);
-    settings.width = width;
-    settings.height = height;
+    std::tie(settings.width, settings.height) = parse_size(command.size);
     const auto backend = find_named(kBackendNames, command.backend);
     if (!backend) throw UsageError("--backend: expected one of " + listed(kBackendNames) + ", got " + command.backend);
     settings.backend = *backend;

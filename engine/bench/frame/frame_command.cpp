@@ -1,13 +1,13 @@
 #include "engine/bench/frame/frame_command.h"
 
 #include "engine/bench/report/changes.h"
+#include "engine/capture/picture_size.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <optional>
 
 namespace splice::bench {
@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::uint32_t kMostDisks = 50'000'000;
 constexpr unsigned kMostRounds = 10'000;
-
-std::pair<std::uint32_t, std::uint32_t> parse_pixels(const std::string& text) {
-    unsigned width = 0, height = 0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
-        throw UsageError("--size: expected WIDTHxHEIGHT in pixels, got " + text);
-    return {width, height};
-}
 
 template <typename Value, std::size_t N>
 std::vector<Value> parse_names(const Names<Value, N>& names, const std::vector<std::string>& words,
@@ -75,7 +67,7 @@ void run_frame_command(FrameCommand& command) {
     FrameBenchOptions& options = command.options;
     options.sizes.clear();
     for (const std::string& size : command.sizes)
-        options.sizes.push_back(parse_pixels(size));
+        options.sizes.push_back(parse_size(size));
     options.backends = parse_names(kBackendNames, command.backends, "--backend");
     options.shadings = parse_names(kShadingNames, command.shadings, "--shading");
     options.bare = command.backends.empty();

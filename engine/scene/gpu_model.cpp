@@ -110,12 +110,17 @@ void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
     const std::array<std::byte, 4> white{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
     images_.push_back(create_texture(device, {1, 1, 1, 0, 0, white.size()}, white));
     sampler_ = gpu::create_sampler(device, {.max_anisotropy = kAnisotropy});
+    // White is white however it is sampled, and this is the cheapest way: a software device spends more on anisotropy
+    // than on all else of a fragment.
+    plain_sampler_ =
+        gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST, .mipmap_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST});
     set_layout_ = material_set_layout(device);
     for (const format::Material& material : model.materials) {
-        const std::size_t image = material.texture == format::kNoTexture ? images_.size() - 1 : material.texture;
+        const bool plain = material.texture == format::kNoTexture;
+        const std::size_t image = plain ? images_.size() - 1 : material.texture;
         material_sets_.push_back(pool_.allocate(set_layout_));
         gpu::DescriptorWriter(material_sets_.back())
-            .sampled_image(0, images_[image].view(), sampler_.get())
+            .sampled_image(0, images_[image].view(), plain ? plain_sampler_.get() : sampler_.get())
             .write(device);
     }
 }

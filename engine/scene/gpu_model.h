@@ -82,9 +82,9 @@ class GpuModel {
     bool paged_;
     SurfelStore surfels_;
     std::vector<TreeLeaf> leaves_;
-    std::vector<std::byte> record_copy_;  // where the host cannot read the device's
-    std::vector<gpu::Image> images_;      // the last is a white texel
-    gpu::UniqueSampler sampler_;
+    std::vector<std::byte> record_copy_;          // where the host cannot read the device's
+    std::vector<gpu::Image> images_;              // the last is a white texel
+    gpu::UniqueSampler sampler_, plain_sampler_;  // of images, of white
     gpu::DescriptorSetLayout set_layout_;
     gpu::DescriptorPool pool_;
     std::vector<VkDescriptorSet> material_sets_;

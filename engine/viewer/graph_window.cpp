@@ -108,7 +108,7 @@ void draw_graph_window(PanelContext& context, const Layout& layout) {
                             ImGuiCond_Appearing);
     ImGui::SetNextWindowSize({free_width - 20, height}, ImGuiCond_Appearing);
     ImGui::Begin("Render graph", &state.graph_window, ImGuiWindowFlags_HorizontalScrollbar);
-    const graph::FramePicture& picture = state.graph;
+    const graph::FramePicture& picture = state.measured.graph;
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const GraphDrawing drawing = lay_out_graph(picture, origin, ImGui::GetContentRegionAvail().x);
     if (ImGui::IsWindowHovered())
@@ -143,7 +143,7 @@ void draw_graph_window(PanelContext& context, const Layout& layout) {
                      picture.passes[box.pass].name.c_str());
     }
     ImGui::Dummy(drawing.size);
-    if (state.lit_pass >= 0) describe(picture, static_cast<std::uint32_t>(state.lit_pass), state.history);
+    if (state.lit_pass >= 0) describe(picture, static_cast<std::uint32_t>(state.lit_pass), state.measured.history);
     ImGui::End();
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 namespace splice {
 
@@ -119,9 +120,22 @@ bool Interface::wants_keyboard() const {
 }
 
 void Interface::begin_frame() {
-    ImGui_ImplGlfw_NewFrame();
-    // Where the cursor is comes from the events, scripted ones included, not from the desktop.
     ImGuiIO& io = ImGui::GetIO();
+    // The library's own step asks the display for what events have told already, which is to wait until it has shown
+    // the last frame. Needed where the cursor's shape may change, and once after.
+    const bool wanted = std::exchange(wanted_, io.WantCaptureMouse || io.WantCaptureKeyboard);
+    if (wanted || wanted_ || !begun_) ImGui_ImplGlfw_NewFrame();
+    const VkExtent2D size = window_.size(), pixels = window_.pixels();
+    io.DisplaySize = {static_cast<float>(size.width), static_cast<float>(size.height)};
+    if (size.width > 0 && size.height > 0)
+        io.DisplayFramebufferScale = {static_cast<float>(pixels.width) / io.DisplaySize.x,
+                                      static_cast<float>(pixels.height) / io.DisplaySize.y};
+    const double now = Window::now();
+    constexpr double kShortest = 1e-4, kLongest = 1;  // seconds a frame, as the library counts
+    io.DeltaTime = static_cast<float>(std::clamp(now - frame_at_, kShortest, kLongest));
+    frame_at_ = now;
+    begun_ = true;
+    // Where the cursor is comes from the events, scripted ones included, not from the desktop.
     io.MousePos = {static_cast<float>(cursor_x_), static_cast<float>(cursor_y_)};
     std::copy(std::begin(buttons_), std::end(buttons_), io.MouseDown);
     ImGui::NewFrame();

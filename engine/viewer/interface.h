@@ -36,6 +36,9 @@ class Interface {
     double scale_ = 0;
     double cursor_x_ = -1, cursor_y_ = -1;
     bool buttons_[3] = {};
+    bool begun_ = false;
+    bool wanted_ = false;  // the last frame's mouse or keyboard
+    double frame_at_ = 0;  // seconds; the last frame
 };
 
 /// The device's side.

@@ -50,21 +50,23 @@ void plot(const PassHistory& history, int lit) {
 
 void draw_performance_section(PanelContext& context) {
     ViewerState& state = context.state;
-    const auto& series = state.history.series();
+    const auto& series = state.measured.history.series();
     int lit = -1;
     for (std::size_t s = 0; s < series.size(); ++s)
-        if (state.lit_pass >= 0 && state.graph.passes[static_cast<std::size_t>(state.lit_pass)].name == series[s].name)
+        if (state.lit_pass >= 0 &&
+            state.measured.graph.passes[static_cast<std::size_t>(state.lit_pass)].name == series[s].name)
             lit = static_cast<int>(s);
-    plot(state.history, lit);
+    plot(state.measured.history, lit);
     for (std::size_t s = 0; s < series.size(); ++s) {
         const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(pass_colour(s, lit >= 0 && static_cast<int>(s) != lit));
         ImGui::TextColored(colour, "%-18s", series[s].name.c_str());
         ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.72F);
         ImGui::Text("%.2f ms", static_cast<double>(series[s].last));
     }
-    ImGui::Text("%.1f frames/s", state.frames_per_second);
-    if (state.stats.overlap_mean > 0) ImGui::Text("overlap %.2f surfels a pixel", state.stats.overlap_mean);
-    const CutStats& cut = state.stats.cut;
+    ImGui::Text("%.1f frames/s", state.measured.frames_per_second);
+    if (state.measured.stats.overlap_mean > 0)
+        ImGui::Text("overlap %.2f surfels a pixel", state.measured.stats.overlap_mean);
+    const CutStats& cut = state.measured.stats.cut;
     if (cut.tau > 0) {
         ImGui::Text("levels chosen in %.2f ms, %s nodes", cut.select_ms + cut.gather_ms,
                     grouped(cut.counts.visited).c_str());
@@ -74,8 +76,8 @@ void draw_performance_section(PanelContext& context) {
                     grouped(cut.counts.merged_surfels).c_str());
         ImGui::Text("%s patches by triangles", grouped(cut.counts.patches_by_triangles).c_str());
     }
-    ImGui::Text("device memory %s", megabytes(state.device_bytes).c_str());
-    ImGui::Text("attachments %s", megabytes(state.attachment_bytes).c_str());
+    ImGui::Text("device memory %s", megabytes(state.measured.device_bytes).c_str());
+    ImGui::Text("attachments %s", megabytes(state.measured.attachment_bytes).c_str());
     ImGui::TextWrapped("%s", state.device_name.c_str());
     if (!context.shader_status.empty()) ImGui::TextWrapped("%s", context.shader_status.c_str());
     ImGui::Checkbox("Render graph", &state.graph_window);

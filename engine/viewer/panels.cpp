@@ -135,18 +135,19 @@ void draw_status_bar(PanelContext& context, const Layout& layout) {
     ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
     std::string text;
     if (state.scene) {
-        text = std::to_string(state.drawn_width) + " x " + std::to_string(state.drawn_height);
-        const bool reduced = state.stats.frame_ms > 0 && state.looks[0].width > state.drawn_width;
-        if (state.drawn_coarser) {
+        text = std::to_string(state.measured.drawn_width) + " x " + std::to_string(state.measured.drawn_height);
+        const bool reduced = state.measured.stats.frame_ms > 0 && state.looks[0].width > state.measured.drawn_width;
+        if (state.measured.drawn_coarser) {
             std::array<char, 32> tau{};
-            std::snprintf(tau.data(), tau.size(), ", tau %.1f px", state.stats.cut.tau);
+            std::snprintf(tau.data(), tau.size(), ", tau %.1f px", state.measured.stats.cut.tau);
             text += tau.data();
         }
-        if (reduced || state.drawn_coarser) text += " while moving";
+        if (reduced || state.measured.drawn_coarser) text += " while moving";
         std::array<char, 64> numbers{};
-        std::snprintf(numbers.data(), numbers.size(), "   %.1f ms   ", state.stats.frame_ms);
-        text += numbers.data() + grouped(state.stats.surfels_drawn) + " surfels, " +
-                grouped(state.stats.triangles_drawn) + " triangles   " + std::string(name_of(state.stats.backend));
+        std::snprintf(numbers.data(), numbers.size(), "   %.1f ms   ", state.measured.stats.frame_ms);
+        text += numbers.data() + grouped(state.measured.stats.surfels_drawn) + " surfels, " +
+                grouped(state.measured.stats.triangles_drawn) + " triangles   " +
+                std::string(name_of(state.measured.stats.backend));
     }
     ImGui::TextUnformatted(text.c_str());
     ImGui::End();

@@ -33,6 +33,27 @@ void blit(VkCommandBuffer commands, const ShownPicture& picture, VkImage window,
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, scaled ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
 }
 
+// Parts of an image to the same place in another of the same size.
+void copy(VkCommandBuffer commands, const std::vector<PixelRect>& parts, VkImage from, VkImage to, VkExtent2D extent) {
+    std::vector<VkImageCopy> regions;
+    for (const PixelRect& part : parts) {
+        if (part.x < 0 || part.y < 0 || part.width <= 0 || part.height <= 0) continue;
+        VkImageCopy region{};
+        region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.dstSubresource = region.srcSubresource;
+        region.srcOffset = region.dstOffset = {part.x, part.y, 0};
+        // The window may be smaller than when the panels were laid out.
+        const auto inside = [](std::int32_t from_, std::int32_t size, std::uint32_t limit) {
+            return static_cast<std::uint32_t>(std::clamp(static_cast<std::int32_t>(limit) - from_, 0, size));
+        };
+        region.extent = {inside(part.x, part.width, extent.width), inside(part.y, part.height, extent.height), 1};
+        if (region.extent.width > 0 && region.extent.height > 0) regions.push_back(region);
+    }
+    if (regions.empty()) return;
+    vkCmdCopyImage(commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                   static_cast<std::uint32_t>(regions.size()), regions.data());
+}
+
 // The acquire semaphore is waited for where copies begin.
 constexpr graph::ExternalUse kAcquired{{VK_PIPELINE_STAGE_TRANSFER_BIT, 0}, VK_IMAGE_LAYOUT_UNDEFINED};
 
@@ -41,9 +62,31 @@ constexpr graph::ExternalUse kAcquired{{VK_PIPELINE_STAGE_TRANSFER_BIT, 0}, VK_I
 Presenter::Presenter(gpu::Device& device, VkSurfaceKHR surface, gpu::PresentMode mode)
     : device_(device), swapchain_(device, surface), wanted_mode_(mode), executor_(device, {.timestamps = false}) {}
 
-graph::ImageHandle Presenter::declare(const std::vector<ShownPicture>& pictures, const DrawInterface& draw_interface,
+void Presenter::reserve_kept() {
+    const VkExtent2D extent = swapchain_.extent();
+    if (kept_.image && kept_.image.options().width == extent.width && kept_.image.options().height == extent.height)
+        return;
+    kept_ = KeptInterface();
+    kept_.image = gpu::Image(device_, {.format = swapchain_.format(),
+                                       .width = extent.width,
+                                       .height = extent.height,
+                                       .usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                       .name = "kept panels"});
+}
+
+void Presenter::keep(const ShownInterface& interface) {
+    kept_.panels = interface.panels;
+    kept_.revision.reset();
+    if (interface.only_panels) kept_.revision = interface.revision;
+}
+
+graph::ImageHandle Presenter::declare(const std::vector<ShownPicture>& pictures, const ShownInterface& interface,
                                       graph::Bindings& bindings, std::uint32_t image) {
     graph_.clear();
+    const bool keeps = reads_window();
+    if (keeps) reserve_kept();
+    const bool again =
+        keeps && interface.only_panels && kept_.revision == interface.revision && kept_.panels == interface.panels;
     const VkExtent2D extent = swapchain_.extent();
     const graph::ImageDescription description{
         .format = swapchain_.format(), .width = extent.width, .height = extent.height};
@@ -54,9 +97,18 @@ graph::ImageHandle Presenter::declare(const std::vector<ShownPicture>& pictures,
                                     VK_NULL_HANDLE, swapchain_.usage()},
                   description);
 
+    graph::ImageHandle kept;
+    if (keeps) {
+        kept = graph_.import_image("kept panels", description,
+                                   {.before = again ? graph::external::transfer_read() : graph::external::none(),
+                                    .after = graph::external::transfer_read()});
+        bindings.bind(kept, kept_.image);
+    }
+
     graph::Pass show = graph_.add_pass("show", graph::PassKind::transfer);
+    if (again) show.transfer_read(kept);
     window = show.transfer_write(window, graph::Contents::discard());
-    show.record([window, extent, &pictures](const graph::PassContext& context) {
+    show.record([window, kept, again, extent, &pictures, &interface](const graph::PassContext& context) {
         if (pictures.empty()) {
             const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
             vkCmdClearColorImage(context.commands, context.image(window), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -64,11 +116,22 @@ graph::ImageHandle Presenter::declare(const std::vector<ShownPicture>& pictures,
         }
         for (const ShownPicture& picture : pictures)
             blit(context.commands, picture, context.image(window), extent);
+        if (again) copy(context.commands, interface.panels, context.image(kept), context.image(window), extent);
     });
+    if (again) return window;
 
-    graph::Pass interface = graph_.add_pass("interface", graph::PassKind::graphics);
-    window = interface.colour_attachment(window, graph::Contents::keep());
-    interface.record(draw_interface);
+    graph::Pass draw = graph_.add_pass("interface", graph::PassKind::graphics);
+    window = draw.colour_attachment(window, graph::Contents::keep());
+    draw.record(interface.draw);
+    if (!keeps) return window;
+
+    graph::Pass keep_panels = graph_.add_pass("keep", graph::PassKind::transfer);
+    keep_panels.transfer_read(window);
+    kept = keep_panels.transfer_write(kept, graph::Contents::discard());
+    keep_panels.record([window, kept, extent, &interface](const graph::PassContext& context) {
+        copy(context.commands, interface.panels, context.image(window), context.image(kept), extent);
+    });
+    keep(interface);
     return window;
 }
 
@@ -96,8 +159,8 @@ void Presenter::take_pixels(WindowPixels& pixels) const {
         pixels.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(mapped[blue_first && i % 2 == 0 ? i ^ 2 : i]);
 }
 
-bool Presenter::present(VkExtent2D window, const std::vector<ShownPicture>& pictures,
-                        const DrawInterface& draw_interface, WindowPixels* pixels) {
+bool Presenter::present(VkExtent2D window, const std::vector<ShownPicture>& pictures, const ShownInterface& interface,
+                        WindowPixels* pixels) {
     const bool same_mode = swapchain_.mode() == wanted_mode_;
     if (!swapchain_.fits(window) || !same_mode) {
         if (!swapchain_.recreate(window, wanted_mode_)) return false;
@@ -106,8 +169,8 @@ bool Presenter::present(VkExtent2D window, const std::vector<ShownPicture>& pict
     const std::optional<std::uint32_t> image = swapchain_.acquire();
     if (!image) return false;
     graph::Bindings bindings;
-    const graph::ImageHandle shown = declare(pictures, draw_interface, bindings, *image);
-    const bool reads = pixels != nullptr && (swapchain_.usage() & VK_IMAGE_USAGE_TRANSFER_SRC_BIT) != 0;
+    const graph::ImageHandle shown = declare(pictures, interface, bindings, *image);
+    const bool reads = pixels != nullptr && reads_window();
     if (reads) read_back(shown, bindings);
     device_.submit_and_wait([&](VkCommandBuffer commands) { executor_.execute(graph_, bindings, commands); },
                             swapchain_.semaphores(VK_PIPELINE_STAGE_TRANSFER_BIT));

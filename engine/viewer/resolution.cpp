@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace splice {
 
@@ -13,7 +14,7 @@ constexpr int kLast = static_cast<int>(kShares.size()) - 1;
 constexpr int kPatience = 10;                      // frames
 constexpr double kFinest = 1;                      // tau, above 0
 constexpr double kMostCoarser = 2, kFiner = 0.84;  // times tau, a step
-constexpr double kSpare = 0.7;                     // of the target: a frame that leaves room
+constexpr double kSpare = 0.85;                    // of the target: a frame that leaves room
 
 }  // namespace
 
@@ -22,13 +23,14 @@ double MovingDetail::share() const {
 }
 
 void MovingDetail::took(double ms, double target_ms) {
+    const double last_ms = std::exchange(last_ms_, ms);
     if (ms > target_ms) {
         fast_frames_ = 0;
         if (step_ < kLast) {
             ++step_;
-        } else {
+        } else if (last_ms > target_ms) {
             // What is drawn goes with the square of tau, and with part of the time.
-            const double factor = std::clamp(ms / target_ms, 1.1, kMostCoarser);
+            const double factor = std::clamp(std::min(ms, last_ms) / target_ms, 1.1, kMostCoarser);
             tau_ = tau_ == 0 ? kFinest : std::min(tau_ * factor, kCoarsest);
         }
         return;

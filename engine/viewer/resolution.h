@@ -13,8 +13,9 @@ class MovingDetail {
     double share() const;
     /// Pixels of the picture as it is drawn (engine/scene/lod_cut.h), 0 to kCoarsest; 0: full detail.
     double tau() const { return tau_; }
-    /// What a frame of the present detail took. Coarser at once, fewer pixels first; finer only after several fast
-    /// frames, levels of detail first.
+    /// What a frame of the present detail took. Coarser at once, fewer pixels first, though levels of detail only where
+    /// the frame before was slow, too: one may have waited for a shader. Finer only after several fast frames, levels
+    /// of detail first.
     void took(double ms, double target_ms = kTargetMs);
 
     static constexpr double kCoarsest = 32;
@@ -22,6 +23,7 @@ class MovingDetail {
   private:
     int step_ = 0;
     double tau_ = 0;
+    double last_ms_ = 0;
     int fast_frames_ = 0;
 };
 

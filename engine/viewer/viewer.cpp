@@ -1,12 +1,8 @@
 #include "engine/viewer/viewer.h"
 
-#include "engine/capture/camera_path.h"
-#include "engine/capture/png_file.h"
 #include "engine/scene/gpu_model.h"
 #include "engine/viewer/settings_file.h"
 #include "preprocess/model_format/error.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +19,6 @@ constexpr double kLongestSeconds = 0.1;  // of flight a frame, after a pause
 
 std::int32_t rounded(double value) {
     return static_cast<std::int32_t>(std::lround(value));
-}
-
-std::uint32_t shared(std::uint32_t side, double share) {
-    return std::max(1U, static_cast<std::uint32_t>(std::lround(side * share)));
 }
 
 }  // namespace
@@ -122,7 +114,8 @@ void Viewer::recover(const std::string& reason) {
 
 void Viewer::loop() {
     while (!quit_ && !window_.wants_to_close()) {
-        window_.wait(idle_seconds());
+        const double idle_s = idle_seconds(), asked = Window::now();
+        window_.wait(idle_s);
         const double before = now_;
         now_ = Window::now();
         if (!window_.events().empty() || window_.take_damage()) redraw_ = kFramesToSettle;
@@ -145,22 +138,35 @@ void Viewer::loop() {
             graphics_->interface.reset();
             graphics_->interface = std::make_unique<InterfaceDrawing>(graphics_->device);
         }
+        const double began = Window::now();
         draw_panels();
         advance_turntable();
+        const double panels_done = Window::now();
         draw_pictures();
+        const double pictures_done = Window::now();
         show_window();
         update_title();
-        const double frame = Window::now() - now_;
+        const double ended = Window::now(), frame = ended - (idle_s > 0 ? now_ : asked);
         frame_times_.add(1000 * frame);
+        panel_times_.add(1000 * (panels_done - began));
+        picture_times_.add(1000 * (pictures_done - panels_done));
+        show_times_.add(1000 * (ended - pictures_done));
         if (frame > 0) {
             // A running mean over some ten frames.
             const double rate = 1 / std::max(frame, 1e-4);
-            state_.frames_per_second += (rate - state_.frames_per_second) * 0.1;
+            measured_.frames_per_second += (rate - measured_.frames_per_second) * 0.1;
         }
         if (state_.reduce_while_moving && moving()) moving_detail_.took(frame * 1000, state_.moving_budget_ms);
-        if (state_.first_picture_s == 0 && state_.scene)
-            state_.first_picture_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+        if (state_.first_picture_s == 0) {
+            note_start(state_.scene ? "first picture" : "first frame");
+            if (state_.scene) state_.first_picture_s = start_steps_.back().second;
+        }
     }
+}
+
+void Viewer::note_start(const char* step) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - started_;
+    if (start_steps_.empty() || start_steps_.back().first != step) start_steps_.emplace_back(step, passed.count());
 }
 
 void Viewer::poll_job() {
@@ -192,7 +198,9 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
     scene->paths = request.paths;
     scene->name = request.paths.front().filename().string();
     if (request.paths.size() > 1) scene->name += " and " + std::to_string(request.paths.size() - 1) + " more";
+    if (state_.first_picture_s == 0) note_start("scene read");
     scene->loaded = upload_scene(prepared, *graphics_->renderer);
+    if (state_.first_picture_s == 0) note_start("scene uploaded");
     scene->prepared = std::move(prepared);
     std::map<const HostModel*, bool> counted;
     for (std::size_t i = 0; i < scene->prepared.models.size(); ++i) {
@@ -274,6 +282,7 @@ void Viewer::draw_panels() {
     draw_graph_window(context, panels);
     draw_overlays(context, panels);
     interface_.end_frame();
+    content_.take();
     // Commands may add commands.
     while (!commands_.empty()) {
         const Command command = commands_.front();
@@ -287,107 +296,6 @@ void Viewer::draw_panels() {
         }
         redraw_ = kFramesToSettle;
     }
-}
-
-void Viewer::draw_pictures() {
-    pictures_whole_ = true;
-    if (!state_.scene) return;
-    const bool reduced = state_.reduce_while_moving && moving();
-    const double share = reduced ? moving_detail_.share() : 1;
-    if (!state_.freeze_cut)
-        state_.cut_camera.reset();
-    else if (!state_.cut_camera)
-        state_.cut_camera = state_.camera.camera();
-    for (std::size_t i = 0; i < pictures(); ++i) {
-        const Viewport viewport = area(i).size;
-        CaptureSettings& look = state_.looks[i];
-        look.width = viewport.width;
-        look.height = viewport.height;
-        look.camera = state_.camera.camera();
-        look.cut_camera = state_.cut_camera;
-        CaptureSettings settings = look;
-        settings.width = shared(viewport.width, share);
-        settings.height = shared(viewport.height, share);
-        if (reduced) {
-            settings.antialias = 1;
-            settings.tau = std::max(look.tau, moving_detail_.tau());
-        }
-        pictures_whole_ =
-            pictures_whole_ && share == 1 && settings.antialias == look.antialias && settings.tau == look.tau;
-        Pane& pane = graphics_->panes[i];
-        const bool drawn = pane.update(graphics_->device, *graphics_->renderer, state_.scene->loaded.scene,
-                                       state_.scene_revision, settings);
-        if (!drawn || i != state_.edited_look) continue;
-        state_.stats = pane.stats();
-        state_.history.add(pane.stats().passes);
-        state_.graph = graphics_->renderer->last_graph();
-        state_.attachment_bytes = graphics_->renderer->attachment_bytes();
-        state_.drawn_width = settings.width;
-        state_.drawn_height = settings.height;
-        state_.drawn_coarser = settings.tau > look.tau;
-    }
-    state_.device_bytes = graphics_->device.memory().statistics().allocated_bytes;
-    state_.device_name = graphics_->device.info().name;
-}
-
-std::vector<ShownPicture> Viewer::shown_pictures() const {
-    std::vector<ShownPicture> shown;
-    if (!state_.scene) return shown;
-    for (std::size_t i = 0; i < pictures(); ++i) {
-        const Pane& pane = graphics_->panes[i];
-        if (pane.empty()) continue;
-        const PictureArea place = area(i);
-        PixelRect source{0, 0, static_cast<std::int32_t>(pane.settings().width),
-                         static_cast<std::int32_t>(pane.settings().height)};
-        PixelRect destination{rounded(place.x), rounded(place.y), static_cast<std::int32_t>(place.size.width),
-                              static_cast<std::int32_t>(place.size.height)};
-        if (state_.comparison == Comparison::kWipe) {
-            const std::int32_t from = rounded(state_.wipe * source.width),
-                               to = rounded(state_.wipe * destination.width);
-            if (i == 0) {
-                source.width = from;
-                destination.width = to;
-            } else {
-                source = {from, 0, source.width - from, source.height};
-                destination = {destination.x + to, destination.y, destination.width - to, destination.height};
-            }
-            if (source.width == 0 || destination.width == 0) continue;
-        }
-        shown.push_back({&pane.image(), source, destination});
-    }
-    return shown;
-}
-
-bool Viewer::show_window(WindowPixels* pixels) {
-    const auto draw_interface = [&](const graph::PassContext& context) { graphics_->interface->draw(context); };
-    const bool shown = graphics_->presenter.present(window_.pixels(), shown_pictures(), draw_interface, pixels);
-    state_.present_mode = graphics_->presenter.mode();
-    const bool repeat = graphics_->interface->prepare();
-    if (!shown || repeat) redraw_ = kFramesToSettle;
-    return shown && !repeat;
-}
-
-void Viewer::advance_turntable() {
-    if (!turntable_ || !state_.scene) return;
-    CaptureSettings settings = full_settings(state_.edited_look);
-    const double angle = 2 * glm::pi<double>() * turntable_->done / turntable_->count;
-    const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0, 1, 0)));
-    settings.camera.eye = settings.camera.target + turn * (turntable_->first.eye - turntable_->first.target);
-    settings.camera.up = turn * turntable_->first.up;
-    try {
-        Frame frame = graphics_->renderer->render(state_.scene->loaded.scene, settings);
-        write_png(numbered(turntable_->path, turntable_->done, turntable_->count),
-                  {frame.width, frame.height, std::move(frame.rgba)});
-        if (++turntable_->done < turntable_->count) return;
-        report("Wrote " + std::to_string(turntable_->count) + " pictures, the last " +
-                   numbered(turntable_->path, turntable_->count - 1, turntable_->count).string(),
-               false);
-    } catch (const gpu::DeviceLostError&) {
-        throw;
-    } catch (const Error& error) {
-        report(error.what(), true);
-    }
-    turntable_.reset();
 }
 
 }  // namespace splice

@@ -4,6 +4,7 @@
 
 #include "engine/viewer/frame_times.h"
 #include "engine/viewer/interface.h"
+#include "engine/viewer/interface_content.h"
 #include "engine/viewer/pane.h"
 #include "engine/viewer/panels.h"
 #include "engine/viewer/presenter.h"
@@ -21,6 +22,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace splice {
@@ -59,6 +61,7 @@ class Viewer {
     void recover(const std::string& reason);
     double idle_seconds() const;
     bool at_rest() const;
+    void note_start(const char* step);
 
     void play_script();
     void take_input();
@@ -74,6 +77,9 @@ class Viewer {
     void update_title();
     void draw_panels();
     void draw_pictures();
+    bool measurements_are_due() const;
+    void publish_measurements();
+    std::vector<PixelRect> panel_parts() const;
     bool show_window(WindowPixels* pixels = nullptr);
     void advance_turntable();
 
@@ -115,11 +121,17 @@ class Viewer {
     std::size_t dragged_area_ = 0;
     bool dragging_divider_ = false;
     double now_ = 0, moved_at_ = -1e9;  // seconds
+    double published_at_ = -1e9;        // the measurements
     int redraw_ = 0;                    // frames until the interface is at rest
     bool pictures_whole_ = false;       // drawn, at full resolution
     bool quit_ = false;
     int losses_ = 0;
-    FrameTimes frame_times_;
+    InterfaceContent content_;
+    Measurements measured_;                                // up to the last frame
+    FrameTimes frame_times_;                               // whole frames
+    FrameTimes panel_times_, picture_times_, show_times_;  // their parts
+    // Seconds from the start to the end of each step of it, in order.
+    std::vector<std::pair<std::string, double>> start_steps_;
 };
 
 }  // namespace splice

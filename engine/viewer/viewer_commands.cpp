@@ -14,6 +14,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -51,6 +52,7 @@ Viewer::Viewer(const ViewerCommandLine& command)
                  .validate = command.renderer.validate,
                  .extensions = window_.instance_extensions()}),
       interface_(window_) {
+    note_start("window opened");
     if (command.script) script_ = read_script(*command.script);
     // What draws fastest where it runs; splice-capture's default is the reference.
     for (CaptureSettings& look : state_.looks)
@@ -61,6 +63,7 @@ Viewer::Viewer(const ViewerCommandLine& command)
     if (command.present_mode) state_.present_mode = *command.present_mode;
     if (command.shaders) shaders_.emplace(*command.shaders);
     graphics_.emplace(window_, instance_, command.renderer.device, state_.present_mode);
+    note_start("device opened");
     if (!command.inputs.empty()) open(command.inputs, false);
     redraw_ = 1;
 }
@@ -124,20 +127,32 @@ void Viewer::go_to(const std::string& name) {
 }
 
 void Viewer::write_statistics(const std::filesystem::path& path) {
-    const CutStats& cut = state_.stats.cut;
+    const CutStats& cut = measured_.stats.cut;
+    nlohmann::ordered_json start;
+    for (const auto& [step, seconds] : start_steps_)
+        start[step] = seconds;
+    nlohmann::ordered_json passes;
+    for (const PassHistory::Series& pass : measured_.history.series())
+        passes[pass.name] = std::accumulate(pass.ms.begin(), pass.ms.end(), 0.0) / PassHistory::kFrames;
     const nlohmann::ordered_json json{{"first_picture_s", state_.first_picture_s},
+                                      {"start_s", start},
                                       {"frames", frame_times_.count()},
                                       {"frames_per_second", frame_times_.frames_per_second()},
                                       {"median_frame_ms", frame_times_.median_ms()},
-                                      {"drawn", {state_.drawn_width, state_.drawn_height}},
-                                      {"picture_ms", state_.stats.frame_ms},
+                                      {"median_panels_ms", panel_times_.median_ms()},
+                                      {"median_pictures_ms", picture_times_.median_ms()},
+                                      {"median_show_ms", show_times_.median_ms()},
+                                      {"drawn", {measured_.drawn_width, measured_.drawn_height}},
+                                      {"picture_ms", measured_.stats.frame_ms},
+                                      {"mean_pass_ms", passes},
                                       {"tau", cut.tau},
-                                      {"surfels_drawn", state_.stats.surfels_drawn},
-                                      {"triangles_drawn", state_.stats.triangles_drawn},
+                                      {"surfels_drawn", measured_.stats.surfels_drawn},
+                                      {"triangles_drawn", measured_.stats.triangles_drawn},
                                       {"select_ms", cut.select_ms},
-                                      {"device_bytes", state_.device_bytes}};
+                                      {"device_bytes", measured_.device_bytes}};
     write_text_file(path, json.dump(2) + "\n");
-    frame_times_.clear();
+    for (FrameTimes* times : {&frame_times_, &panel_times_, &picture_times_, &show_times_})
+        times->clear();
 }
 
 void Viewer::set_value(const std::string& name, const std::string& value) {

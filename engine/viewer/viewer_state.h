@@ -43,6 +43,17 @@ struct Message {
     bool error = false;
 };
 
+/// What the last frames took and held, of the look that is edited.
+struct Measurements {
+    PassHistory history;
+    FrameStats stats;
+    graph::FramePicture graph;
+    std::uint32_t drawn_width = 0, drawn_height = 0;  // of the picture as drawn; smaller than shown while moving
+    bool drawn_coarser = false;                       // with a larger tau than the look's, while moving
+    double frames_per_second = 0;
+    std::uint64_t device_bytes = 0, attachment_bytes = 0;
+};
+
 struct ViewerState {
     // What is shown: one look, or two to compare. Camera and size are the window's and filled in for each frame.
     std::array<CaptureSettings, 2> looks;
@@ -70,15 +81,8 @@ struct ViewerState {
     int lit_pass = -1;  // of the last frame's graph, under the cursor
     gpu::PresentMode present_mode = gpu::PresentMode::fifo;
 
-    // Measurements, of the look that is edited.
-    PassHistory history;
-    FrameStats stats;
-    graph::FramePicture graph;
-    std::uint32_t drawn_width = 0, drawn_height = 0;  // of the picture as drawn; smaller than shown while moving
-    bool drawn_coarser = false;                       // with a larger tau than the look's, while moving
-    double frames_per_second = 0;
+    Measurements measured;       // as the panels say them
     double first_picture_s = 0;  // from the start of the program to the window with the first picture
-    std::uint64_t device_bytes = 0, attachment_bytes = 0;
     std::string device_name;
 };
 

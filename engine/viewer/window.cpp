@@ -73,8 +73,18 @@ struct Window::Callbacks {
         add(window, InputEvent::Kind::kFocus).pressed = gained == GLFW_TRUE;
     }
     static void refresh(GLFWwindow* window) { of(window).damaged_ = true; }
-    static void size(GLFWwindow* window, int, int) { of(window).damaged_ = true; }
-    static void iconify(GLFWwindow* window, int) { of(window).damaged_ = true; }
+    static void pixels(GLFWwindow* window, int width, int height) {
+        of(window).pixels_ = extent_of(width, height);
+        of(window).damaged_ = true;
+    }
+    static void size(GLFWwindow* window, int width, int height) {
+        of(window).size_ = extent_of(width, height);
+        of(window).damaged_ = true;
+    }
+    static void iconify(GLFWwindow* window, int minimised) {
+        of(window).minimised_ = minimised == GLFW_TRUE;
+        of(window).damaged_ = true;
+    }
     static void scale(GLFWwindow* window, float x, float y) {
         of(window).content_scale_ = std::max({x, y, 1.0F});
         of(window).damaged_ = true;
@@ -106,11 +116,18 @@ Window::Window(const WindowOptions& options) : title_(options.title) {
     glfwSetWindowContentScaleCallback(window_, Callbacks::scale);
     glfwSetWindowFocusCallback(window_, Callbacks::focus);
     glfwSetWindowRefreshCallback(window_, Callbacks::refresh);
-    glfwSetFramebufferSizeCallback(window_, Callbacks::size);
+    glfwSetFramebufferSizeCallback(window_, Callbacks::pixels);
+    glfwSetWindowSizeCallback(window_, Callbacks::size);
     glfwSetWindowIconifyCallback(window_, Callbacks::iconify);
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
     Callbacks::scale(window_, x, y);
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    Callbacks::pixels(window_, width, height);
+    glfwGetWindowSize(window_, &width, &height);
+    Callbacks::size(window_, width, height);
+    Callbacks::iconify(window_, glfwGetWindowAttrib(window_, GLFW_ICONIFIED));
 }
 
 Window::~Window() {
@@ -130,19 +147,6 @@ gpu::Surface Window::create_surface(const gpu::Instance& instance) const {
     gpu::check(glfwCreateWindowSurface(instance.handle(), window_, nullptr, &surface),
                "preparing the window for Vulkan");
     return {instance, surface};
-}
-
-VkExtent2D Window::pixels() const {
-    if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) return {0, 0};
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(window_, &width, &height);
-    return extent_of(width, height);
-}
-
-VkExtent2D Window::size() const {
-    int width = 0, height = 0;
-    glfwGetWindowSize(window_, &width, &height);
-    return extent_of(width, height);
 }
 
 bool Window::wants_to_close() const {

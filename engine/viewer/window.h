@@ -33,8 +33,9 @@ class Window {
     std::vector<std::string> instance_extensions() const;
     gpu::Surface create_surface(const gpu::Instance& instance) const;
 
-    VkExtent2D pixels() const;  // 0 x 0 while minimised
-    VkExtent2D size() const;    // in screen coordinates, as cursor positions are
+    // As the last events told: to ask the display would be to wait for it.
+    VkExtent2D pixels() const { return minimised_ ? VkExtent2D{0, 0} : pixels_; }  // 0 x 0 while minimised
+    VkExtent2D size() const { return size_; }  // in screen coordinates, as cursor positions are
     double content_scale() const { return content_scale_; }
     bool wants_to_close() const;
     void close();
@@ -55,6 +56,8 @@ class Window {
     struct Callbacks;
     GLFWwindow* window_ = nullptr;
     InputQueue events_;
+    VkExtent2D pixels_{}, size_{};
+    bool minimised_ = false;
     double content_scale_ = 1;
     bool damaged_ = true;
     std::string title_;

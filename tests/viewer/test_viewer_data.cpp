@@ -68,6 +68,20 @@ TEST_CASE("where half the resolution is too slow, levels of detail grow coarser 
     CHECK(detail.tau() == MovingDetail::kCoarsest);
 }
 
+TEST_CASE("a single slow frame, as shaders cause, does not make levels of detail coarser") {
+    MovingDetail detail;
+    detail.took(80);
+    detail.took(80);
+    REQUIRE(detail.share() == 0.5);
+    for (int i = 0; i < 5; ++i) {
+        detail.took(20);
+        detail.took(400);
+    }
+    CHECK(detail.tau() == 0);
+    detail.took(30);
+    CHECK(detail.tau() > 0);
+}
+
 TEST_CASE("frame times: a median and a rate of the last thousand") {
     FrameTimes times;
     CHECK(times.frames_per_second() == 0);

@@ -20,7 +20,8 @@ ImU32 pass_colour(std::size_t index, bool dim) {
 // Stacked columns, one a frame, the newest to the right.
 void plot(const PassHistory& history, int lit) {
     const ImVec2 origin = ImGui::GetCursorScreenPos();
-    const ImVec2 size{ImGui::GetContentRegionAvail().x, 84};
+    constexpr float kLines = 5.6F;  // of text, its height
+    const ImVec2 size{ImGui::GetContentRegionAvail().x, kLines * ImGui::GetFontSize()};
     ImGui::Dummy(size);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(origin, {origin.x + size.x, origin.y + size.y}, IM_COL32(30, 32, 36, 255));

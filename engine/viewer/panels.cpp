@@ -16,8 +16,9 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_N
 constexpr ImU32 kErrorColour = IM_COL32(255, 140, 115, 255);
 
 void draw_progress(const SceneJob::Progress& progress, const Layout& layout) {
-    const float width = std::min(360.0F, layout.width - layout.panel_width - 20);
-    ImGui::SetNextWindowPos({layout.panel_width + (layout.width - layout.panel_width - width) / 2, 10});
+    const float gap = 10 * layout.scale;
+    const float width = std::min(360 * layout.scale, layout.width - layout.panel_width - 2 * gap);
+    ImGui::SetNextWindowPos({layout.panel_width + (layout.width - layout.panel_width - width) / 2, gap});
     ImGui::SetNextWindowSize({width, 0});
     ImGui::Begin("progress", nullptr, kFixed | ImGuiWindowFlags_NoFocusOnAppearing);
     const std::string stage = progress.stage.empty() ? "reading" : progress.stage;
@@ -27,9 +28,10 @@ void draw_progress(const SceneJob::Progress& progress, const Layout& layout) {
 
 void draw_messages(PanelContext& context, const Layout& layout) {
     if (context.state.messages.empty()) return;
-    const float width = std::min(560.0F, layout.width - layout.panel_width - 20);
+    const float gap = 10 * layout.scale;
+    const float width = std::min(560 * layout.scale, layout.width - layout.panel_width - 2 * gap);
     // Below the progress bar, clear of the render graph.
-    ImGui::SetNextWindowPos({layout.panel_width + 10, 56});
+    ImGui::SetNextWindowPos({layout.panel_width + gap, 56 * layout.scale});
     ImGui::SetNextWindowSize({width, 0});
     ImGui::Begin("messages", nullptr, kFixed | ImGuiWindowFlags_NoFocusOnAppearing);
     for (const Message& message : context.state.messages) {
@@ -90,7 +92,7 @@ std::string megabytes(std::uint64_t bytes) {
 }
 
 Layout lay_out(float width, float height, float scale, bool panels) {
-    Layout layout{.width = width, .height = height};
+    Layout layout{.width = width, .height = height, .scale = scale};
     if (!panels) return layout;
     layout.panel_width = std::min((width < 900 * scale ? kNarrowPanelWidth : kPanelWidth) * scale, width * 0.5F);
     layout.status_height = std::min(26 * scale, height * 0.5F);

@@ -16,6 +16,7 @@ struct Layout {
     float width = 0, height = 0;  // of the window
     float panel_width = 0;        // 0: no panel
     float status_height = 0;
+    float scale = 1;  // of the monitor: letters and gaps are so many times as large
 };
 Layout lay_out(float width, float height, float scale, bool panels);
 

@@ -28,7 +28,7 @@ struct Action {
     std::string_view expected;
 };
 
-constexpr std::array<Action, 36> kActions{{
+constexpr std::array<Action, 37> kActions{{
     {"move", "nn", "X Y"},
     {"press", "b", "left|middle|right"},
     {"release", "b", "left|middle|right"},
@@ -44,6 +44,7 @@ constexpr std::array<Action, 36> kActions{{
     {"resize", "ii", "WIDTH HEIGHT"},
     {"minimise", "", "nothing"},
     {"restore", "", "nothing"},
+    {"monitor-scale", "n", "FACTOR"},
     {"view", "s", "VIEW"},
     {"next-view", "n", "1|-1"},
     {"set", "ss", "NAME VALUE"},

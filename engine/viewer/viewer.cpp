@@ -80,9 +80,17 @@ void Viewer::run() {
         try {
             loop();
         } catch (const gpu::DeviceLostError& error) {
-            recover(error.what());
+            if (std::exchange(device_was_lost_, true))
+                throw DeviceError(std::string("the device was lost twice: ") + error.what());
+            recover();
+            report(std::string("The device was lost and opened again (") + error.what() + ")", true);
         } catch (const gpu::SurfaceLostError& error) {
-            recover(error.what());
+            // Windows may lose theirs any number of times, but one that nothing was shown on is not worth another.
+            if (!shown_since_recovery_)
+                throw DeviceError(std::string("the window's surface was lost before anything was shown on it: ") +
+                                  error.what());
+            recover();
+            report(std::string("The window's surface was lost and made anew (") + error.what() + ")", true);
         }
     }
     if (!options_.script) save_settings(settings_of(state_, window_.size().width, window_.size().height));
@@ -93,8 +101,8 @@ void Viewer::run() {
 }
 
 // What the scene is made of stays in memory, so that another device can take it over.
-void Viewer::recover(const std::string& reason) {
-    if (++losses_ > 1) throw DeviceError("the device was lost twice: " + reason);
+void Viewer::recover() {
+    shown_since_recovery_ = false;
     const std::string device = options_.renderer.device;
     Scene kept;
     if (state_.scene) {
@@ -109,7 +117,6 @@ void Viewer::recover(const std::string& reason) {
         state_.scene->loaded.scene = std::move(kept);
         ++state_.scene_revision;
     }
-    report("The device was lost and opened again (" + reason + ")", true);
 }
 
 void Viewer::loop() {
@@ -144,7 +151,7 @@ void Viewer::loop() {
         const double panels_done = Window::now();
         draw_pictures();
         const double pictures_done = Window::now();
-        show_window();
+        shown_since_recovery_ = show_window() || shown_since_recovery_;
         update_title();
         const double ended = Window::now(), frame = ended - (idle_s > 0 ? now_ : asked);
         frame_times_.add(1000 * frame);
@@ -290,6 +297,8 @@ void Viewer::draw_panels() {
         try {
             run_command(command);
         } catch (const gpu::DeviceLostError&) {
+            throw;
+        } catch (const gpu::SurfaceLostError&) {
             throw;
         } catch (const Error& error) {
             report(error.what(), true);

@@ -58,7 +58,7 @@ class Viewer {
     };
 
     void loop();
-    void recover(const std::string& reason);
+    void recover();
     double idle_seconds() const;
     bool at_rest() const;
     void note_start(const char* step);
@@ -125,7 +125,7 @@ class Viewer {
     int redraw_ = 0;                    // frames until the interface is at rest
     bool pictures_whole_ = false;       // drawn, at full resolution
     bool quit_ = false;
-    int losses_ = 0;
+    bool device_was_lost_ = false, shown_since_recovery_ = false;
     InterfaceContent content_;
     Measurements measured_;                                // up to the last frame
     FrameTimes frame_times_;                               // whole frames

@@ -1,6 +1,7 @@
 // What commands do, whether a panel, a key or a script gives them.
 #include "engine/capture/png_file.h"
 #include "engine/viewer/capture_line.h"
+#include "engine/viewer/process_memory.h"
 #include "engine/viewer/settings_file.h"
 #include "engine/viewer/viewer.h"
 #include "preprocess/model_format/atomic_file.h"
@@ -134,6 +135,7 @@ void Viewer::write_statistics(const std::filesystem::path& path) {
     nlohmann::ordered_json passes;
     for (const PassHistory::Series& pass : measured_.history.series())
         passes[pass.name] = std::accumulate(pass.ms.begin(), pass.ms.end(), 0.0) / PassHistory::kFrames;
+    const ProcessMemory memory = process_memory();
     const nlohmann::ordered_json json{{"first_picture_s", state_.first_picture_s},
                                       {"start_s", start},
                                       {"frames", frame_times_.count()},
@@ -149,7 +151,10 @@ void Viewer::write_statistics(const std::filesystem::path& path) {
                                       {"surfels_drawn", measured_.stats.surfels_drawn},
                                       {"triangles_drawn", measured_.stats.triangles_drawn},
                                       {"select_ms", cut.select_ms},
-                                      {"device_bytes", measured_.device_bytes}};
+                                      {"device_bytes", measured_.device_bytes},
+                                      {"heap_bytes", memory.heap_bytes},
+                                      {"resident_bytes", memory.resident_bytes},
+                                      {"open_files", memory.open_files}};
     write_text_file(path, json.dump(2) + "\n");
     for (FrameTimes* times : {&frame_times_, &panel_times_, &picture_times_, &show_times_})
         times->clear();
@@ -231,6 +236,12 @@ void Viewer::run_command(const Command& command) {
          }},
         {"minimise", [&] { window_.minimise(); }},
         {"restore", [&] { window_.restore(); }},
+        {"monitor-scale",
+         [&] {
+             const double scale = command.number(0);
+             if (scale < 1 || scale > 4) throw UsageError("monitor-scale: expected a number from 1 to 4");
+             window_.set_content_scale(scale);
+         }},
         {"view", [&] { set_value("view", arguments[0]); }},
         {"next-view",
          [&] {

@@ -175,6 +175,11 @@ void Window::restore() {
     glfwRestoreWindow(window_);
 }
 
+void Window::set_content_scale(double scale) {
+    const auto factor = static_cast<float>(scale);
+    Callbacks::scale(window_, factor, factor);
+}
+
 void Window::set_clipboard(const std::string& text) {
     glfwSetClipboardString(window_, text.c_str());
 }

@@ -43,6 +43,8 @@ class Window {
     void resize(std::uint32_t width, std::uint32_t height);
     void minimise();
     void restore();
+    /// As if the window were on a monitor of another scale from now on.
+    void set_content_scale(double scale);
     void set_clipboard(const std::string& text);
 
     /// Fills events(); waits for one at most so long (0: not at all).

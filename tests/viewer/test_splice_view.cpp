@@ -1,104 +1,30 @@
 // splice-view in a real window on a display of the test's own, with real input events, on a software device.
 #include "engine/capture/png_file.h"
 #include "engine/scene/view.h"
-#include "preprocess/mesh/shapes.h"
-#include "preprocess/mesh/write_mesh.h"
 #include "tests/cli/spawn.h"
 #include "tests/support/test_files.h"
+#include "tests/viewer/running_viewer.h"
 #include "tests/viewer/virtual_display.h"
 
 #include <catch2/catch.hpp>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-#include <thread>
+#include <utility>
+#include <vector>
 
 using namespace splice;
 using test::cropped;
 using test::difference;
+using test::kPanel;
+using test::kStatus;
+using test::read_text;
+using test::RunningViewer;
+using test::scene_part;
+using test::write_mesh_file;
+using test::write_model_file;
+using test::write_text;
 
 namespace {
-
-constexpr std::uint32_t kPanel = 300, kStatus = 26;  // of the interface at this size
-
-std::string read_text(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-}
-
-// A mesh that is neither flat nor symmetric, so that turning it shows.
-void write_mesh_file(const std::filesystem::path& path, std::uint32_t segments = 60) {
-    write_ply(shapes::torus_knot(2, 3, segments, 12), path);
-}
-
-void write_model_file(const std::filesystem::path& mesh, const std::filesystem::path& model) {
-    const test::Outcome baked = test::run(
-        {test::program("splice-bake"), {mesh.string(), "-o", model.string(), "--triangle-share", "0.4", "--quiet"}});
-    REQUIRE(baked.exit_code == 0);
-}
-
-// splice-view as another process; its streams go to files of the folder.
-class RunningViewer {
-  public:
-    RunningViewer(const std::filesystem::path& folder, const std::string& display, std::vector<std::string> arguments)
-        : folder_(folder) {
-        arguments.insert(arguments.begin(), test::program("splice-view").string());
-        std::vector<char*> words;
-        for (std::string& argument : arguments)
-            words.push_back(argument.data());
-        words.push_back(nullptr);
-        process_ = fork();
-        if (process_ != 0) return;
-        if (chdir(folder.c_str()) != 0) _exit(126);
-        setenv("DISPLAY", display.c_str(), 1);
-        setenv("XDG_CONFIG_HOME", folder.c_str(), 1);
-        unsetenv("WAYLAND_DISPLAY");
-        if (std::freopen((folder / "out.txt").c_str(), "w", stdout) == nullptr) _exit(126);
-        if (std::freopen((folder / "err.txt").c_str(), "w", stderr) == nullptr) _exit(126);
-        execv(words[0], words.data());
-        _exit(127);
-    }
-    ~RunningViewer() {
-        if (process_ <= 0) return;
-        kill(process_, SIGKILL);
-        waitpid(process_, nullptr, 0);
-    }
-    RunningViewer(const RunningViewer&) = delete;
-    RunningViewer& operator=(const RunningViewer&) = delete;
-
-    /// The exit code, once it ended by itself; -1 where it did not.
-    int wait(double seconds = 120) {
-        for (int i = 0; i < static_cast<int>(seconds * 20); ++i) {
-            int status = 0;
-            if (waitpid(process_, &status, WNOHANG) == process_) {
-                process_ = -1;
-                return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-            }
-            usleep(50000);
-        }
-        return -1;
-    }
-    pid_t process() const { return process_; }
-    std::string err() const { return read_text(folder_ / "err.txt"); }
-    std::string out() const { return read_text(folder_ / "out.txt"); }
-
-  private:
-    std::filesystem::path folder_;
-    pid_t process_ = -1;
-};
-
-Picture scene_part(const Picture& window) {
-    return cropped(window, kPanel, 0, window.width - kPanel, window.height - kStatus);
-}
 
 // Runs the line that "copy camera" gives, and returns its picture.
 Picture captured_by(const std::filesystem::path& folder, const std::filesystem::path& line) {
@@ -298,44 +224,6 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
     CHECK_THAT(read_text(folder / "saved.json"), Catch::Contains("\"here\""));
 }
 
-TEST_CASE("a lost device is opened again once; the second loss ends the run") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply");
-    const std::vector<std::string> arguments{"knot.ply", "--device", "cpu", "--size", "800x600", "--script", "-"};
-    const auto run = [&](const std::string& script) {
-        write_text(folder / "script.txt", script);
-        RunningViewer viewer(
-            folder.path(), display->name(),
-            {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
-        const int code = viewer.wait();
-        return std::pair{code, viewer.err()};
-    };
-    const auto [code, err] = run("wait\nscreenshot a.png\nlose-device\nwait\nscreenshot b.png\nquit\n");
-    CHECK(code == 0);
-    CHECK_THAT(err, Catch::Contains("opened again"));
-    CHECK(difference(read_png(folder / "a.png"), read_png(folder / "b.png")) == 0);
-    const auto [second_code, second_err] = run("wait\nlose-device\nwait\nlose-device\nwait\nquit\n");
-    CHECK(second_code == 1);
-    CHECK_THAT(second_err, Catch::Contains("lost twice"));
-}
-
-TEST_CASE("minimised and one pixel small, it waits and comes back") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    write_text(folder / "script.txt",
-               "wait\nscreenshot a.png\nresize 1 1\nframes 5\nresize 30 20\nframes 5\nresize 800 600\nframes 5\nwait\n"
-               "screenshot b.png\nquit\n");
-    RunningViewer viewer(folder.path(), display->name(),
-                         {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
-    CHECK(viewer.wait() == 0);
-    CHECK(viewer.err() == "");
-    CHECK(read_png(folder / "a.png").width == read_png(folder / "b.png").width);
-}
-
 TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves the last good ones") {
     const auto display = test::VirtualDisplay::start();
     if (!display) return;
@@ -365,59 +253,6 @@ TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves
     CHECK(difference(cropped(before, 240, 0, 500, 500), cropped(after, 240, 0, 500, 500)) == 0);
     display->ask_to_close();
     CHECK(viewer.wait() == 0);
-}
-
-namespace {
-
-std::uint64_t resident_kilobytes(pid_t process) {
-    std::ifstream status("/proc/" + std::to_string(process) + "/status");
-    for (std::string word; status >> word;) {
-        if (word != "VmRSS:") continue;
-        std::uint64_t kilobytes = 0;
-        status >> kilobytes;
-        return kilobytes;
-    }
-    return 0;
-}
-
-// Memory that frames of a moving camera leave behind, in kilobytes.
-std::int64_t growth_over(int frames) {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return 0;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    std::string script = "wait\npress left\n";
-    const auto turn = [&](int count) {
-        for (int i = 0; i < count; ++i)
-            script += "move " + std::to_string(260 + i % 7 * 5) + " " + std::to_string(100 + i % 11 * 3) + "\n";
-    };
-    // The first frames make what later ones use again: resolutions, panels, lists.
-    turn(200);
-    script += "screenshot before.png\n";
-    turn(frames);
-    script += "screenshot after.png\nframes 1000000\n";
-    write_text(folder / "script.txt", script);
-    RunningViewer viewer(folder.path(), display->name(),
-                         {"knot.ply", "--device", "cpu", "--size", "420x300", "--script", "script.txt"});
-    const auto memory_at = [&](const char* picture) {
-        for (int i = 0; i < 40000 && !std::filesystem::exists(folder / picture); ++i)
-            usleep(20000);
-        REQUIRE(std::filesystem::exists(folder / picture));
-        return static_cast<std::int64_t>(resident_kilobytes(viewer.process()));
-    };
-    const std::int64_t before = memory_at("before.png");
-    REQUIRE(before > 0);
-    return memory_at("after.png") - before;
-}
-
-}  // namespace
-
-TEST_CASE("frames of a moving camera leave no memory behind") {
-    CHECK(growth_over(400) < 4096);
-}
-
-TEST_CASE("ten thousand frames of a moving camera leave no memory behind", "[.long]") {
-    CHECK(growth_over(10000) < 4096);
 }
 
 TEST_CASE("usage: what is not understood ends the run with 2 before a window opens") {

@@ -249,8 +249,17 @@ void VirtualDisplay::key(const char* name, bool shift) {
     settle();
 }
 
-void VirtualDisplay::resize(unsigned width, unsigned height) {
+void VirtualDisplay::resize(unsigned width, unsigned height, double seconds_after) {
     XResizeWindow(connection_->display, connection_->window, width, height);
+    settle(seconds_after);
+}
+
+void VirtualDisplay::say_minimised(bool minimised) {
+    Display* display = connection_->display;
+    const Atom state = XInternAtom(display, "WM_STATE", False);
+    const std::array<long, 2> values{minimised ? IconicState : NormalState, 0};
+    XChangeProperty(display, connection_->window, state, state, 32, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(values.data()), static_cast<int>(values.size()));
     settle();
 }
 

@@ -41,7 +41,9 @@ class VirtualDisplay {
     void drag(int from_x, int from_y, int to_x, int to_y, unsigned button = 1);
     void wheel(int notches);                         // positive: away from the hand
     void key(const char* name, bool shift = false);  // as XStringToKeysym knows it
-    void resize(unsigned width, unsigned height);
+    void resize(unsigned width, unsigned height, double seconds_after = 0.05);
+    /// What a window manager says of a window that it hides, or shows again.
+    void say_minimised(bool minimised);
     /// True if the window took the files.
     bool drop(const std::filesystem::path& file, int x, int y);
     void ask_to_close();

@@ -135,7 +135,9 @@ class Assembler {
     }
 
     void pack() {
-        model_.point_tree = pack_point_tree(nodes_);
+        model_.point_tree.resize(nodes_.size());
+        tbb::parallel_for(std::size_t{0}, nodes_.size(),
+                          [&](std::size_t i) { model_.point_tree[i] = pack_point_node(nodes_[i]); });
         model_.packed_surfels.resize(model_.surfels.size());
         tbb::parallel_for(std::size_t{0}, model_.surfels.size(),
                           [&](std::size_t i) { model_.packed_surfels[i] = pack_surfel(model_.surfels[i]); });

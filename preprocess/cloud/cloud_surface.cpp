@@ -2,6 +2,7 @@
 
 #include "preprocess/cloud/least_spread.h"
 #include "preprocess/cloud/neighbour_search.h"
+#include "preprocess/cloud/vicinity.h"
 #include "preprocess/cloud/voronoi_cell.h"
 #include "preprocess/model_format/tangent_frame.h"
 
@@ -42,15 +43,6 @@ constexpr std::size_t kBorderNeighbour = 4;
 struct Plane {
     Vec3f normal;
     bool is_line = false;
-};
-
-// A point's neighbours, the nearest first.
-struct Vicinity {
-    std::size_t count = 0;
-    std::array<std::uint32_t, NeighbourSearch::kMostNeighbours> index;
-    std::array<Vec3f, NeighbourSearch::kMostNeighbours> offset;
-
-    std::span<const Vec3f> offsets(std::size_t most) const { return std::span(offset).first(std::min(most, count)); }
 };
 
 struct FoundPoint {
@@ -101,7 +93,7 @@ class Estimator {
                 bool enough = true;
                 Vec3f normal = given_normal(first + q);
                 if (normal == Vec3f::Zero()) {
-                    const Plane plane = fit_plane(vicinity.offsets(k_));
+                    const Plane plane = fit_plane(vicinity, k_);
                     normal = plane.normal;
                     enough = !plane.is_line;
                     ++estimated;
@@ -131,10 +123,10 @@ class Estimator {
         Vec3f normal = given_normal(point);
         if (normal == Vec3f::Zero()) {
             look_around(point, nearest, vicinity);
-            const Plane plane = fit_plane(vicinity.offsets(k_));
+            const Plane plane = fit_plane(vicinity, k_);
             normal = plane.normal;
             look_around(point, more, vicinity);
-            if (plane.is_line) normal = fit_plane(vicinity.offsets(more.size())).normal;
+            if (plane.is_line) normal = fit_plane(vicinity, more.size()).normal;
         } else {
             look_around(point, more, vicinity);
         }
@@ -146,12 +138,19 @@ class Estimator {
     Vec3f given_normal(std::size_t point) const { return normals_.empty() ? Vec3f(Vec3f::Zero()) : normals_[point]; }
 
     void look_around(std::size_t point, std::span<const Neighbour> list, Vicinity& vicinity) const {
-        vicinity.count = 0;
-        for (const Neighbour neighbour : list) {
-            if (neighbour == kNoNeighbour) break;
-            vicinity.index[vicinity.count] = index_of(neighbour);
-            vicinity.offset[vicinity.count++] = points_[index_of(neighbour)] - points_[point];
+        std::size_t count = 0;
+        const Vec3f centre = points_[point];
+        for (; count < list.size() && list[count] != kNoNeighbour; ++count) {
+            const std::uint32_t index = index_of(list[count]);
+            const Vec3f& other = points_[index];
+            vicinity.index[count] = index;
+            vicinity.x[count] = other.x() - centre.x();
+            vicinity.y[count] = other.y() - centre.y();
+            vicinity.z[count] = other.z() - centre.z();
         }
+        vicinity.count = count;
+        for (; count % Vicinity::kStep != 0; ++count)
+            vicinity.x[count] = vicinity.y[count] = vicinity.z[count] = 0;
     }
 
     void store(std::size_t point, const Vicinity& vicinity) {
@@ -163,34 +162,24 @@ class Estimator {
     }
 
     // The direction in which point and neighbours spread least.
-    static Plane fit_plane(std::span<const Vec3f> offsets) {
-        // Six sums rather than a matrix's nine.
-        double x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-        for (const Vec3f& offset : offsets) {
-            const auto a = static_cast<double>(offset.x()), b = static_cast<double>(offset.y()),
-                       c = static_cast<double>(offset.z());
-            x += a;
-            y += b;
-            z += c;
-            xx += a * a;
-            xy += a * b;
-            xz += a * c;
-            yy += b * b;
-            yz += b * c;
-            zz += c * c;
-        }
-        const double count = static_cast<double>(offsets.size() + 1), square = count * count;
+    Plane fit_plane(const Vicinity& vicinity, std::size_t most) const {
+        const std::size_t neighbours = std::min(most, vicinity.count);
+        const Moments m = functions_.moments(vicinity, neighbours);
+        const double count = static_cast<double>(neighbours + 1);
+        const auto spread = [&](float product, float a, float b) {
+            return (static_cast<double>(product) - static_cast<double>(a) * static_cast<double>(b) / count) / count;
+        };
         Eigen::Matrix3d covariance;  // its upper half
-        covariance << xx / count - x * x / square, xy / count - x * y / square, xz / count - x * z / square, 0,
-            yy / count - y * y / square, yz / count - y * z / square, 0, 0, zz / count - z * z / square;
-        const LeastSpread spread = least_spread(covariance);
+        covariance << spread(m.xx, m.x, m.x), spread(m.xy, m.x, m.y), spread(m.xz, m.x, m.z), 0, spread(m.yy, m.y, m.y),
+            spread(m.yz, m.y, m.z), 0, 0, spread(m.zz, m.z, m.z);
+        const LeastSpread found = least_spread(covariance);
         Plane plane;
-        plane.is_line = spread.middle <= kLineShare * kLineShare * spread.most;
-        plane.normal = spread.direction.cast<float>();
+        plane.is_line = found.middle <= kLineShare * kLineShare * found.most;
+        plane.normal = found.direction.cast<float>();
         return plane;
     }
 
-    static FoundPoint cover_cell(const Vec3f& normal, const Vicinity& vicinity) {
+    FoundPoint cover_cell(const Vec3f& normal, const Vicinity& vicinity) const {
         FoundPoint result;
         result.disk.normal = normal;
         if (vicinity.count == 0) {
@@ -198,30 +187,41 @@ class Estimator {
             result.border = true;
             return result;
         }
-        const TangentFrame frame = tangents_of({normal.x(), normal.y(), normal.z()});
-        const Vec3f s(frame.s[0], frame.s[1], frame.s[2]), t(frame.t[0], frame.t[1], frame.t[2]);
-        const auto distance = [&](std::size_t i) { return vicinity.offset[i].norm(); };
+        const CellPlane plane{normal, tangents_of({normal.x(), normal.y(), normal.z()}), kSteepest};
         // Beyond the last neighbour nothing is known.
-        VoronoiCell cell(distance(vicinity.count - 1));
-        for (std::uint32_t i = 0; i < vicinity.count; ++i) {
-            const Vec3f& offset = vicinity.offset[i];
-            const Eigen::Vector2f projected(offset.dot(s), offset.dot(t));
-            if (projected.squaredNorm() > kSteepest * kSteepest * offset.squaredNorm()) cell.cut(projected, i);
-        }
-        result.border = !cell.is_bounded();
+        const float known = vicinity.distance(vicinity.count - 1);
+        const SmallCell cell = vicinity.count <= Vicinity::kStep ? functions_.small_cell(vicinity, plane, known)
+                                                                 : large_cell(vicinity, plane, known);
+        result.border = !cell.is_bounded;
         const std::size_t last = result.border ? std::min(kBorderNeighbour, vicinity.count - 1) : vicinity.count - 1;
-        float radius = std::min(cell.reach(true) * kOverlap, distance(last));
+        float radius = std::min(cell.reach * kOverlap, vicinity.distance(last));
         // No corner at all: a line of points, or two.
-        if (radius == 0) radius = distance(0) / 2 * kOverlap;
+        if (radius == 0) radius = vicinity.distance(0) / 2 * kOverlap;
         result.disk.radius = radius;
         // Half-way to a neighbour the surface has risen half as far.
+        result.disk.above = std::min(cell.above / 2, radius);
+        result.disk.below = std::min(cell.below / 2, radius);
+        return result;
+    }
+
+    static SmallCell large_cell(const Vicinity& vicinity, const CellPlane& plane, float limit) {
+        const auto& [s, t] = plane.frame;
+        VoronoiCell cell(limit);
+        for (std::uint32_t i = 0; i < vicinity.count; ++i) {
+            const Vec3f offset = vicinity.offset(i);
+            const Eigen::Vector2f projected(offset.x() * s[0] + offset.y() * s[1] + offset.z() * s[2],
+                                            offset.x() * t[0] + offset.y() * t[1] + offset.z() * t[2]);
+            if (projected.squaredNorm() > plane.least_cosine * plane.least_cosine * offset.squaredNorm())
+                cell.cut(projected, i);
+        }
+        SmallCell result;
+        result.reach = cell.reach(true);
+        result.is_bounded = cell.is_bounded();
         cell.neighbours([&](std::uint32_t i) {
-            const float height = vicinity.offset[i].dot(normal) / 2;
-            result.disk.above = std::max(result.disk.above, height);
-            result.disk.below = std::max(result.disk.below, -height);
+            const float height = vicinity.offset(i).dot(plane.normal);
+            result.above = std::max(result.above, height);
+            result.below = std::max(result.below, -height);
         });
-        result.disk.above = std::min(result.disk.above, radius);
-        result.disk.below = std::min(result.disk.below, radius);
         return result;
     }
 
@@ -268,6 +268,7 @@ class Estimator {
 
     const std::vector<Vec3f>&points_, &normals_;
     unsigned k_;
+    VicinityFunctions functions_ = vicinity_functions();
     NeighbourSearch search_;
     CloudSurface surface_;
     std::vector<float> reach_;  // distance to the last stored neighbour

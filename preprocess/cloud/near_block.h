@@ -1,5 +1,5 @@
 // The inner loop of the search for nearest neighbours: the points of one block against those of another. With 512-bit
-// vectors where the processor has them (AVX-512F), the same result without.
+// or 256-bit vectors where the processor has them (AVX-512F, AVX2); the same result without.
 #pragma once
 
 #include <array>
@@ -44,11 +44,12 @@ struct NearLists {
 
 /// Adds to the lists of `own` what `other`, whose first point has index `first_index`, has nearer than `reach`.
 /// `same`: both are one block, and no point is its own neighbour.
-void add_near_points(const PointBlock& own, const PointBlock& other, std::uint32_t first_index, bool same,
-                     NearLists& lists);
+using AddNearPoints = void (*)(const PointBlock& own, const PointBlock& other, std::uint32_t first_index, bool same,
+                               NearLists& lists);
 
-/// The same without the processor's vectors, for comparison.
-void add_near_points_plainly(const PointBlock& own, const PointBlock& other, std::uint32_t first_index, bool same,
-                             NearLists& lists);
+enum class NearVectors { kNone, k256, k512 };
+
+/// The fastest that this processor can do with vectors of at most that width.
+AddNearPoints near_points_adder(NearVectors widest = NearVectors::k512);
 
 }  // namespace splice

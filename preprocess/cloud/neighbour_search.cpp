@@ -8,9 +8,9 @@
 namespace splice {
 namespace {
 
-constexpr float kFarAway = 1e15f;   // coordinate of what is no point; its distances are ...
-constexpr float kNotFound = 1e28f;  // ... above this, and those of points below
-constexpr float kNotAsked = -1;     // reach of a point whose neighbours nobody wants
+constexpr float kFarAway = 1e15f;  // coordinate of what is no point; its distances are ...
+constexpr float kNotFound = NeighbourSearch::Lists::kUnbounded;  // ... above this, and those of points below
+constexpr float kNotAsked = -1;                                  // reach of a point whose neighbours nobody wants
 
 Eigen::Vector4f padded(const Vec3f& v) {
     return {v.x(), v.y(), v.z(), 0};
@@ -62,12 +62,13 @@ void NeighbourSearch::Lists::reset(unsigned k) {
 // The search for one block's points.
 class NeighbourSearch::Query {
   public:
-    Query(const NeighbourSearch& search, std::size_t block, NearLists& lists, std::uint32_t points)
+    /// Neighbours at squared distances above `bound` are not looked for.
+    Query(const NeighbourSearch& search, std::size_t block, NearLists& lists, std::uint32_t points, float bound)
         : search_(search), own_(search.blocks_[block]), block_(block), lists_(lists) {
         lists_.reach.fill(kNotAsked);
         for (std::size_t q = 0; q < std::min(kBlock, search.points_ - block * kBlock); ++q) {
             if ((points >> q & 1) == 0) continue;
-            lists_.reach[q] = kNotFound;
+            lists_.reach[q] = bound;
             const Eigen::Vector4f point(own_.x[q], own_.y[q], own_.z[q], 0);
             bounds_ = {bounds_.low.cwiseMin(point), bounds_.high.cwiseMax(point)};
         }
@@ -110,8 +111,8 @@ class NeighbourSearch::Query {
     }
 
     void look_into(std::size_t block) {
-        add_near_points(own_, search_.blocks_[block], static_cast<std::uint32_t>(block * kBlock), block == block_,
-                        lists_);
+        search_.add_near_points_(own_, search_.blocks_[block], static_cast<std::uint32_t>(block * kBlock),
+                                 block == block_, lists_);
         farthest_ = *std::max_element(lists_.reach.begin(), lists_.reach.end());
     }
 
@@ -123,9 +124,25 @@ class NeighbourSearch::Query {
     float farthest_ = kNotFound;  // squared distance of the last neighbour found, of all points
 };
 
+// Blocks side by side have neighbours about as far away. A bound from the block before keeps most points that would
+// soon be pushed out again from being inserted at all; where it was too near, the search is repeated without.
 void NeighbourSearch::find(std::size_t block, unsigned k, Lists& lists, std::uint32_t points) const {
-    lists.reset(k);
-    Query(*this, block, lists.near_, points).run();
+    constexpr float kRoom = 1.3f;
+    const auto search = [&](float bound) {
+        lists.reset(k);
+        Query(*this, block, lists.near_, points, bound).run();
+    };
+    const auto is_short = [&](std::size_t q) {
+        return lists.near_.reach[q] >= 0 && lists.of(q).back() == kNoNeighbour;
+    };
+    const float bound = lists.bound_;
+    search(bound);
+    for (std::size_t q = 0; q < kBlock && bound < kNotFound; ++q) {
+        if (!is_short(q)) continue;
+        search(kNotFound);
+        break;
+    }
+    lists.bound_ = std::min(kRoom * *std::ranges::max_element(lists.near_.reach), kNotFound);
 }
 
 }  // namespace splice

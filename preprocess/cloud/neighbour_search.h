@@ -22,6 +22,7 @@ class NeighbourSearch {
     /// The `k` nearest of each point of one block, nearest first, kNoNeighbour where the cloud has no more points.
     class Lists {
       public:
+        static constexpr float kUnbounded = 1e28f;  // squared distance
         std::span<const Neighbour> of(std::size_t point_of_block) const {
             return {near_.first + point_of_block * near_.stride, near_.k};
         }
@@ -32,6 +33,7 @@ class NeighbourSearch {
 
         NearLists near_;
         std::vector<Neighbour> storage_;
+        float bound_ = kUnbounded;  // squared distance within which the next search's neighbours are expected
     };
 
     /// Any order of the points is right, but only nearby points side by side are fast. Coordinates within 1e9.
@@ -50,6 +52,7 @@ class NeighbourSearch {
     };
     class Query;
 
+    AddNearPoints add_near_points_ = near_points_adder();
     std::size_t points_;
     std::vector<PointBlock> blocks_;
     std::vector<std::vector<Bounds>> levels_;  // of single blocks first, of all last

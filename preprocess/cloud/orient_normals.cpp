@@ -3,6 +3,7 @@
 #include "preprocess/cloud/signed_sets.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -27,18 +28,23 @@ struct Edge {
 
 // Nearly parallel normals: of one sheet, unless the edge leaves it. Otherwise the surface turns; on an arc, the normal
 // at one end of a chord is that at the other mirrored at the plane across the chord.
-Edge judge(const Vec3f& from, const Vec3f& to, const Vec3f& normal_a, const Vec3f& normal_b) {
-    const Vec3f along = (to - from).normalized();
-    const float cosine = normal_a.dot(normal_b);
-    const float rise = std::max(std::abs(along.dot(normal_a)), std::abs(along.dot(normal_b)));
-    if (std::abs(cosine) >= kParallel) return {cosine < 0, std::max(0.0f, std::abs(cosine) - rise / 2)};
-    const float mirrored = (normal_a - 2 * along * along.dot(normal_a)).dot(normal_b);
+inline Edge judge(const Vec3f& along, const Vec3f& normal_a, const Vec3f& normal_b) {
+    const float cosine = normal_a.dot(normal_b), square = along.squaredNorm();
+    const float rise_a = along.dot(normal_a), rise_b = along.dot(normal_b);
+    if (std::abs(cosine) >= kParallel) {
+        const float rise = std::sqrt(std::max(rise_a * rise_a, rise_b * rise_b) / square);
+        return {cosine < 0, std::max(0.0f, std::abs(cosine) - rise / 2)};
+    }
+    const float mirrored = cosine - 2 * rise_a * rise_b / square;
     return {mirrored < 0, std::abs(mirrored) / 2};
 }
 
+// Whole numbers, so that sums do not depend on the order.
+constexpr float kVoteSteps = 1 << 20;
+
 struct Vote {
-    std::uint64_t pair;  // representatives of two sets, the smaller in the upper half
-    double opposite;     // certainty for opposite less that for equal signs
+    std::uint64_t pair;     // numbers of two sets, the smaller in the upper half
+    std::int64_t opposite;  // certainty for opposite less that for equal signs, in kVoteSteps
 };
 
 class Orienter {
@@ -58,11 +64,14 @@ class Orienter {
     }
 
   private:
-    Edge edge(std::size_t a, std::size_t b) const {
-        return judge(positions_[a], positions_[b], disks_[a].normal, disks_[b].normal);
+    Edge edge_between(std::size_t a, std::size_t b) const {
+        return judge(positions_[b] - positions_[a], disks_[a].normal, disks_[b].normal);
     }
     bool is_neighbour(std::size_t of, std::size_t point) const {
         return std::ranges::count(neighbours_[of], static_cast<std::uint32_t>(point)) != 0;
+    }
+    bool is_within(std::size_t piece, const Vote& vote) const {
+        return vote.pair >> 32 >= first_set_[piece] && (vote.pair & 0xffffffffu) < first_set_[piece + 1];
     }
     std::size_t end_of(std::size_t piece) const { return std::min(disks_.size(), (piece + 1) * kPiece); }
 
@@ -71,30 +80,39 @@ class Orienter {
         const std::size_t begin = piece * kPiece, end = end_of(piece);
         struct Candidate {
             std::uint16_t a, b;
+            std::uint8_t bucket;
             bool opposite;
         };
-        std::array<std::vector<Candidate>, kBuckets> buckets;
+        std::vector<Candidate> found;
+        found.reserve((end - begin) * kStoredNeighbours);
+        std::array<std::size_t, kBuckets> place{};
         for (std::size_t a = begin; a < end; ++a) {
             for (const std::uint32_t b : neighbours_[a]) {
                 if (b < begin || b >= end || b == a) continue;
+                if (std::abs(disks_[a].normal.dot(disks_[b].normal)) < kCertain) continue;
                 // From b's side this edge was seen already.
                 if (b < a && is_neighbour(b, a)) continue;
-                const Edge found = edge(a, b);
-                if (found.certainty < kCertain) continue;
-                const float share = (1 - found.certainty) / (1 - kCertain);
+                const Edge edge = edge_between(a, b);
+                if (edge.certainty < kCertain) continue;
+                const float share = (1 - edge.certainty) / (1 - kCertain);
                 const auto bucket = std::min(static_cast<std::size_t>(share * kBuckets), kBuckets - 1);
-                buckets[bucket].push_back(
-                    {static_cast<std::uint16_t>(a - begin), static_cast<std::uint16_t>(b - begin), found.opposite});
+                ++place[bucket];
+                found.push_back({static_cast<std::uint16_t>(a - begin), static_cast<std::uint16_t>(b - begin),
+                                 static_cast<std::uint8_t>(bucket), edge.opposite});
             }
         }
+        // The most certain bucket first.
+        std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t{0});
+        std::vector<Candidate> sorted(found.size());
+        for (const Candidate& candidate : found)
+            sorted[place[candidate.bucket]++] = candidate;
         SignedSets sets(end - begin);
-        for (const auto& bucket : buckets)
-            for (const Candidate& c : bucket)
-                sets.join(c.a, c.b, c.opposite);
+        for (const Candidate& candidate : sorted)
+            sets.join(candidate.a, candidate.b, candidate.opposite);
         for (std::size_t a = begin; a < end; ++a) {
-            const auto place = sets.find(static_cast<std::uint32_t>(a - begin));
-            set_[a] = static_cast<std::uint32_t>(begin + place.representative);
-            if (place.opposite) flip(a);
+            const auto [representative, opposite] = sets.find(static_cast<std::uint32_t>(a - begin));
+            set_[a] = static_cast<std::uint32_t>(begin + representative);
+            if (opposite) flip(a);
         }
     }
 
@@ -123,35 +141,41 @@ class Orienter {
                 const bool mutual = is_neighbour(b, a);
                 if (b < a && mutual) continue;
                 const auto [low, high] = std::minmax(set_[a], set_[b]);
-                const Edge found = edge(a, b);
-                const double weight = (mutual ? 2 : 1) * static_cast<double>(found.certainty);
-                votes.push_back({std::uint64_t{low} << 32 | high, found.opposite ? weight : -weight});
+                const Edge edge = edge_between(a, b);
+                const auto weight = (mutual ? 2 : 1) * static_cast<std::int64_t>(edge.certainty * kVoteSteps);
+                votes.push_back({std::uint64_t{low} << 32 | high, edge.opposite ? weight : -weight});
             }
         }
         return summed(std::move(votes));
     }
 
     static std::vector<Vote> summed(std::vector<Vote> votes) {
-        std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.pair < b.pair; });
-        std::vector<Vote> sums;
+        tbb::parallel_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.pair < b.pair; });
+        std::size_t sums = 0;
         for (const Vote& vote : votes) {
-            if (sums.empty() || sums.back().pair != vote.pair) {
-                sums.push_back(vote);
+            if (sums == 0 || votes[sums - 1].pair != vote.pair) {
+                votes[sums++] = vote;
             } else {
-                sums.back().opposite += vote.opposite;
+                votes[sums - 1].opposite += vote.opposite;
             }
         }
-        return sums;
+        votes.resize(sums);
+        return votes;
     }
 
     // The pairs with the clearest votes first.
     void join_sets(const std::vector<std::vector<Vote>>& votes_of_pieces) {
-        std::vector<Vote> votes;
-        for (const auto& part : votes_of_pieces)
-            votes.insert(votes.end(), part.begin(), part.end());
-        votes = summed(std::move(votes));
-        std::stable_sort(votes.begin(), votes.end(),
-                         [](const Vote& a, const Vote& b) { return std::abs(a.opposite) > std::abs(b.opposite); });
+        // Two pieces may have voted on a pair only if it has a set of each.
+        std::vector<Vote> votes, across;
+        for (std::size_t piece = 0; piece < votes_of_pieces.size(); ++piece)
+            for (const Vote& vote : votes_of_pieces[piece])
+                (is_within(piece, vote) ? votes : across).push_back(vote);
+        across = summed(std::move(across));
+        votes.insert(votes.end(), across.begin(), across.end());
+        tbb::parallel_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
+            const std::int64_t of_a = std::abs(a.opposite), of_b = std::abs(b.opposite);
+            return of_a != of_b ? of_a > of_b : a.pair < b.pair;
+        });
         SignedSets components(sets_);
         for (const Vote& vote : votes)
             components.join(static_cast<std::uint32_t>(vote.pair >> 32), static_cast<std::uint32_t>(vote.pair),

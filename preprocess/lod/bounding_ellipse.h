@@ -56,13 +56,15 @@ inline double minor_to_hold(const Footprint& footprint, double major) {
     return std::min(rectangle, circle);
 }
 
+/// The longer of the two ellipses that are tried, over the circle.
+inline constexpr double kLongerThanCircle = 1.1;
+
 /// Half axes of an ellipse about the origin, along the footprints' axes, that holds them all. `axis` is left alone.
 inline Ellipse ellipse_around(std::span<const Footprint> footprints) {
-    constexpr double kLonger = 1.1;
     Ellipse ellipse;
     for (const Footprint& footprint : footprints)
         ellipse.major = std::max(ellipse.major, length_of(footprint.x, footprint.y) + footprint.radius);
-    const double circle = ellipse.major, longer = kLonger * circle;
+    const double circle = ellipse.major, longer = kLongerThanCircle * circle;
     for (const Footprint& footprint : footprints)
         ellipse.minor = std::max(ellipse.minor, minor_to_hold(footprint, longer));
     if (longer * ellipse.minor < circle * circle) {

@@ -1,14 +1,15 @@
 #include "preprocess/lod/point_octree.h"
 
 #include "preprocess/lod/bounding_ellipse.h"
+#include "preprocess/lod/disk_bounds.h"
 #include "preprocess/lod/homogeneous_covariance.h"
 #include "preprocess/lod/split_points.h"
-#include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/srgb.h"
 #include "preprocess/model_format/surfel_extent.h"
 #include "preprocess/model_format/tangent_frame.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
@@ -22,8 +23,8 @@ namespace {
 // Larger nodes are bounded by their children.
 constexpr std::uint32_t kBoundedByDisks = 512;
 constexpr double kConeSteps = 255;
-// Bounds are stored in single precision; coordinates are below 1.
-constexpr double kRounding = 1e-6;
+// Bounds are computed and stored in single precision; coordinates are below 1.
+constexpr double kRounding = 4e-6;
 // Of a surfel, cloud_surface.h.
 constexpr double kEpsilon = 1.5;
 
@@ -42,11 +43,10 @@ struct Sums {
     Vec3d normal = Vec3d::Zero(), colour = Vec3d::Zero();  // weighted by area
     double area = 0;
 
-    void add(const format::Surfel& surfel) {
-        const auto radius = static_cast<double>(float_from_half(surfel.radius));
-        const double weight = radius * radius;
+    void add(const format::Surfel& surfel, const Vec3f& unit_normal, float radius) {
+        const double weight = static_cast<double>(radius) * static_cast<double>(radius);
         covariance.add(position_of(surfel));
-        normal += weight * decoded(surfel.normal);
+        normal += weight * unit_normal.cast<double>();
         for (int c = 0; c < 3; ++c)
             colour[c] += weight * static_cast<double>(linear_from_srgb(surfel.colour[c]));
         area += weight;
@@ -59,44 +59,28 @@ struct Sums {
     }
 };
 
-// What is below a node: a disk, or a child with all its disks.
+// A child with all its disks.
 struct Part {
     Vec3d centre, normal;
     Vec3d axes[2];        // half axes
     double longest;       // half axis
-    double above, below;  // of a disk, its solid; of a child, how far its disks leave its plane
-    double height;        // how far its disks leave its plane: those of a child, whose ellipse holds their projections
+    double above, below;  // how far its disks leave its plane
     double sphere;        // radius about its centre
     double cone;          // half-angle, radians
 
+    // How far its disks, whose projections its ellipse holds, leave its plane.
+    double height() const { return std::max(above, below); }
     // How far its disks go along `direction`.
     double reach(const Vec3d& direction) const {
         const double in_plane = length_of(axes[0].dot(direction), axes[1].dot(direction));
-        return std::min(in_plane + height * std::abs(normal.dot(direction)), sphere);
+        return std::min(in_plane + height() * std::abs(normal.dot(direction)), sphere);
     }
 };
 
-Part part_of(const format::Surfel& surfel) {
-    const float radius = float_from_half(surfel.radius);
-    const SurfelExtent extent = decode_extent(surfel.extent, radius);
-    Part part;
-    part.centre = position_of(surfel);
-    part.normal = decoded(surfel.normal);
-    const TangentFrame frame = tangents_of(decode_octahedral(surfel.normal));
-    const auto r = static_cast<double>(radius);
-    for (int k = 0; k < 3; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        part.axes[0][k] = r * static_cast<double>(frame.s[i]);
-        part.axes[1][k] = r * static_cast<double>(frame.t[i]);
-    }
-    part.above = static_cast<double>(extent.above);
-    part.below = static_cast<double>(extent.below);
-    part.longest = r;
-    part.height = 0;
-    part.sphere = length_of(r, std::max(part.above, part.below));
-    part.cone = 0;
-    return part;
-}
+// What bounds a node, before rounding.
+struct NodeBounds {
+    double sphere = 0, cone = 0, above = 0, below = 0, largest_radius = 0, major = 0, minor = 0;
+};
 
 class Builder {
   public:
@@ -107,11 +91,18 @@ class Builder {
         nodes_ = std::move(split.nodes);
         sums_.resize(nodes_.size());
         thickness_.resize(nodes_.size());
+        const std::vector<std::uint32_t> small = small_roots();
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, small.size()),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              DiskArrays disks;
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                                  disks.clear();
+                                  finish_small(small[i], disks);
+                              }
+                          });
         for (std::size_t level = split.level_begin.size() - 1; level-- > 0;) {
             tbb::parallel_for(split.level_begin[level], split.level_begin[level + 1], [&](std::uint32_t index) {
-                add_up(index);
-                place(index);
-                bound(index);
+                if (!is_small(index)) finish_large(index);
             });
         }
         return std::move(nodes_);
@@ -128,14 +119,62 @@ class Builder {
         return std::span<const format::Surfel>(surfels_).subspan(node.first_surfel, node.surfel_count);
     }
 
+    bool is_small(std::uint32_t index) const {
+        return nodes_[index].child_count == 0 || nodes_[index].surfel_count <= kBoundedByDisks;
+    }
+
+    // The highest nodes that are bounded by disks.
+    std::vector<std::uint32_t> small_roots() const {
+        std::vector<std::uint32_t> roots;
+        if (is_small(0)) return {0};
+        for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
+            if (is_small(index)) continue;
+            for (std::uint32_t child = 0; child < nodes_[index].child_count; ++child)
+                if (is_small(nodes_[index].first_child + child)) roots.push_back(nodes_[index].first_child + child);
+        }
+        return roots;
+    }
+
+    // A node and all below it; its disks are appended to `disks`.
+    void finish_small(std::uint32_t index, DiskArrays& disks) {
+        const format::PointNode& node = nodes_[index];
+        const std::size_t begin = disks.size();
+        if (node.child_count == 0) {
+            for (const format::Surfel& surfel : surfels_of(node)) {
+                disks.add(surfel);
+                sums_[index].add(surfel, disks.normal(disks.size() - 1), disks.radius(disks.size() - 1));
+            }
+            disks.fill_step();
+        } else {
+            for (std::uint32_t child = 0; child < node.child_count; ++child)
+                finish_small(node.first_child + child, disks);
+            add_up(index);
+        }
+        place(index);
+        const Axes axes = choose_axes(index);
+        const DiskBounds disk = bound_disks(
+            disks, begin, disks.size(),
+            {axes.centre.cast<float>(), axes.normal.cast<float>(), axes.major.cast<float>(), axes.minor.cast<float>()});
+        const auto exact = [](float value) { return static_cast<double>(value); };
+        store_bounds(index, {.sphere = exact(disk.sphere),
+                             .cone = std::acos(std::clamp(exact(disk.cosine), -1.0, 1.0)),
+                             .above = exact(disk.above),
+                             .below = exact(disk.below),
+                             .largest_radius = exact(disk.largest_radius),
+                             .major = exact(disk.major),
+                             .minor = exact(disk.minor)});
+    }
+
+    void finish_large(std::uint32_t index) {
+        add_up(index);
+        place(index);
+        store_bounds(index, bounds_from_children(index, choose_axes(index)));
+    }
+
     void add_up(std::uint32_t index) {
         const format::PointNode& node = nodes_[index];
-        Sums& sums = sums_[index];
         for (std::uint32_t child = 0; child < node.child_count; ++child)
-            sums.add(sums_[node.first_child + child]);
-        if (node.child_count != 0) return;
-        for (const format::Surfel& surfel : surfels_of(node))
-            sums.add(surfel);
+            sums_[index].add(sums_[node.first_child + child]);
     }
 
     // Position, normal, colour: means.
@@ -150,7 +189,7 @@ class Builder {
         // Normals that cancel out: any will do, the cone will say so.
         const bool usable = sums.normal.norm() > 1e-6 * sums.area;
         node.normal = encoded(usable ? sums.normal : decoded(surfels_[node.first_surfel].normal));
-        round_node(node);
+        round_place(node);
     }
 
     // Of a node that has been bounded.
@@ -166,80 +205,79 @@ class Builder {
         part.above = thickness_[index].above;
         part.below = thickness_[index].below;
         part.longest = static_cast<double>(node.major);
-        part.height = std::max(part.above, part.below);
         part.sphere = static_cast<double>(node.sphere_radius);
         part.cone = node.cone_angle * std::numbers::pi / kConeSteps;
         return part;
     }
 
-    // What the node is bounded by.
-    std::vector<Part> parts_of(const format::PointNode& node) const {
-        std::vector<Part> parts;
-        if (node.child_count != 0 && node.surfel_count > kBoundedByDisks) {
-            for (std::uint32_t child = 0; child < node.child_count; ++child)
-                parts.push_back(part_of_node(node.first_child + child));
-        } else {
-            parts.reserve(node.surfel_count);
-            for (const format::Surfel& surfel : surfels_of(node))
-                parts.push_back(part_of(surfel));
-        }
-        return parts;
-    }
+    struct Axes {
+        Vec3d centre, normal, major, minor;
+    };
 
-    // Ellipse, sphere, cone and thickness, from what the node stores of position and normal, so that rounding is in.
-    void bound(std::uint32_t index) {
+    // From what the node stores of position and normal, so that rounding is in.
+    Axes choose_axes(std::uint32_t index) {
         format::PointNode& node = nodes_[index];
-        const Vec3d centre(static_cast<double>(node.position[0]), static_cast<double>(node.position[1]),
-                           static_cast<double>(node.position[2]));
-        const Vec3d normal = decoded(node.normal);
+        Axes axes;
+        for (int k = 0; k < 3; ++k)
+            axes.centre[k] = static_cast<double>(node.position[k]);
+        axes.normal = decoded(node.normal);
         const TangentFrame frame = tangents_of(decode_octahedral(node.normal));
         const Vec3d s(static_cast<double>(frame.s[0]), static_cast<double>(frame.s[1]),
                       static_cast<double>(frame.s[2]));
         const Vec3d t(static_cast<double>(frame.t[0]), static_cast<double>(frame.t[1]),
                       static_cast<double>(frame.t[2]));
-        const Ellipse spread = ellipse_of(sums_[index].covariance.in_plane(centre, s, t));
+        const Ellipse spread = ellipse_of(sums_[index].covariance.in_plane(axes.centre, s, t));
         node.major_axis = encoded(spread.axis.x() * s + spread.axis.y() * t);
-        round_node(node);
+        round_axis(node);
         // From here on the axis that is stored; what it leaves the plane by is within the rounding added below.
-        const Vec3d major = decoded(node.major_axis), minor = normal.cross(major);
+        axes.major = decoded(node.major_axis);
+        axes.minor = axes.normal.cross(axes.major);
+        return axes;
+    }
 
-        const std::vector<Part> parts = parts_of(node);
+    NodeBounds bounds_from_children(std::uint32_t index, const Axes& axes) const {
+        const format::PointNode& node = nodes_[index];
         std::vector<Footprint> footprints;
-        footprints.reserve(parts.size());
-        double sphere = 0, cosine = 1, cone = 0, above = 0, below = 0, largest_radius = 0;
-        for (const Part& part : parts) {
-            const Vec3d offset = part.centre - centre;
-            footprints.push_back({.x = offset.dot(major),
-                                  .y = offset.dot(minor),
-                                  .reach_x = part.reach(major),
-                                  .reach_y = part.reach(minor),
-                                  .radius = std::min(part.longest + part.height, part.sphere)});
-            sphere = std::max(sphere, offset.norm() + part.sphere);
-            if (part.cone == 0) {
-                cosine = std::min(cosine, part.normal.dot(normal));
-            } else {
-                cone = std::max(cone, std::acos(std::clamp(part.normal.dot(normal), -1.0, 1.0)) + part.cone);
-            }
-            const double height = offset.dot(normal),
-                         slant = length_of(part.axes[0].dot(normal), part.axes[1].dot(normal));
-            above = std::max(above, height + slant + part.above);
-            below = std::max(below, -height + slant + part.below);
-            largest_radius = std::max(largest_radius, part.longest);
+        footprints.reserve(node.child_count);
+        NodeBounds bounds;
+        for (std::uint32_t child = 0; child < node.child_count; ++child) {
+            const Part part = part_of_node(node.first_child + child);
+            const Vec3d offset = part.centre - axes.centre;
+            footprints.push_back({.x = offset.dot(axes.major),
+                                  .y = offset.dot(axes.minor),
+                                  .reach_x = part.reach(axes.major),
+                                  .reach_y = part.reach(axes.minor),
+                                  .radius = std::min(part.longest + part.height(), part.sphere)});
+            bounds.sphere = std::max(bounds.sphere, offset.norm() + part.sphere);
+            bounds.cone =
+                std::max(bounds.cone, std::acos(std::clamp(part.normal.dot(axes.normal), -1.0, 1.0)) + part.cone);
+            const double height = offset.dot(axes.normal),
+                         slant = length_of(part.axes[0].dot(axes.normal), part.axes[1].dot(axes.normal));
+            bounds.above = std::max(bounds.above, height + slant + part.above);
+            bounds.below = std::max(bounds.below, -height + slant + part.below);
+            bounds.largest_radius = std::max(bounds.largest_radius, part.longest);
         }
-        cone = std::max(cone, std::acos(std::clamp(cosine, -1.0, 1.0)));
         const Ellipse ellipse = ellipse_around(footprints);
+        bounds.major = ellipse.major;
+        bounds.minor = ellipse.minor;
+        return bounds;
+    }
+
+    void store_bounds(std::uint32_t index, const NodeBounds& bounds) {
+        format::PointNode& node = nodes_[index];
         const auto length = [](double value) { return static_cast<float>(value * (1 + kRounding) + kRounding); };
-        node.major = length(ellipse.major);
-        node.minor = length(ellipse.minor);
-        node.sphere_radius = length(sphere);
-        round_node(node);
+        node.major = length(bounds.major);
+        node.minor = length(bounds.minor);
+        node.sphere_radius = length(bounds.sphere);
+        round_lengths(node);
         // A thousandth of a radian for the rounding of normals.
-        node.cone_angle =
-            static_cast<std::uint8_t>(std::min(std::ceil((cone + 1e-3) / std::numbers::pi * kConeSteps), kConeSteps));
-        thickness_[index] = {above, below};
-        node.extent = encode_extent({static_cast<float>(above), static_cast<float>(below),
-                                     static_cast<float>(kEpsilon * largest_radius + above + below)},
-                                    node.major);
+        node.cone_angle = static_cast<std::uint8_t>(
+            std::min(std::ceil((bounds.cone + 1e-3) / std::numbers::pi * kConeSteps), kConeSteps));
+        thickness_[index] = {bounds.above, bounds.below};
+        node.extent =
+            encode_extent({static_cast<float>(bounds.above), static_cast<float>(bounds.below),
+                           static_cast<float>(kEpsilon * bounds.largest_radius + bounds.above + bounds.below)},
+                          node.major);
     }
 
     std::vector<format::Surfel>& surfels_;

@@ -10,12 +10,12 @@ namespace splice {
 
 inline float float_from_half(std::uint16_t half) {
     const int exponent = (half >> 10) & 0x1f;
-    const auto fraction = static_cast<float>(half & 0x3ffu);
-    const float sign = (half & 0x8000u) != 0 ? -1.0f : 1.0f;
-    if (exponent == 0x1f)
-        return fraction == 0 ? sign * std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
-    if (exponent == 0) return sign * std::ldexp(fraction, -24);
-    return sign * std::ldexp(1024 + fraction, exponent - 25);
+    const std::uint32_t sign = (half & 0x8000u) << 16, fraction = half & 0x3ffu;
+    if (exponent == 0x1f && fraction != 0) return std::numeric_limits<float>::quiet_NaN();
+    // Subnormal: steps of 2^-24.
+    if (exponent == 0) return (sign != 0 ? -0x1p-24f : 0x1p-24f) * static_cast<float>(fraction);
+    const std::uint32_t biased = exponent == 0x1f ? 0xffu : static_cast<std::uint32_t>(exponent - 15 + 127);
+    return std::bit_cast<float>(sign | biased << 23 | fraction << 13);
 }
 
 /// The least half that is not below `value`: lengths that must still reach what they reach. `value` is a length, at

@@ -19,8 +19,9 @@ inline std::uint32_t encode_octahedral(float x, float y, float z) {
         u = folded_u;
     }
     const auto snorm = [](float f) {
-        return static_cast<std::uint16_t>(
-            static_cast<std::int16_t>(std::lround(std::clamp(f, -1.0f, 1.0f) * 32767.0f)));
+        // To the nearest, exactly, without std::lround's call.
+        const auto steps = static_cast<double>(std::clamp(f, -1.0f, 1.0f) * 32767.0f);
+        return static_cast<std::uint16_t>(static_cast<std::int16_t>(steps + (steps < 0 ? -0.5 : 0.5)));
     };
     return static_cast<std::uint32_t>(snorm(u)) | (static_cast<std::uint32_t>(snorm(v)) << 16);
 }

@@ -27,8 +27,8 @@ std::array<std::uint16_t, 1024> epsilon_table() {
 std::array<std::uint32_t, 2> pack_place(const float (&position)[3]) {
     std::array<std::uint64_t, 3> steps;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        steps[axis] = static_cast<std::uint64_t>(std::clamp(
-            std::floor((static_cast<double>(position[axis]) + 0.5) * kPlaceSteps + 0.5), 0.0, double{kPlaceSteps - 1}));
+        steps[axis] = static_cast<std::uint64_t>(
+            std::clamp((static_cast<double>(position[axis]) + 0.5) * kPlaceSteps + 0.5, 0.0, double{kPlaceSteps - 1}));
     const std::uint64_t bits = steps[0] | steps[1] << kPlaceBits | steps[2] << 2 * kPlaceBits;
     return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
 }

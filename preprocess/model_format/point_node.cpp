@@ -33,29 +33,35 @@ std::uint32_t direction_of(const std::array<float, 3>& axis, const TangentFrame&
     return static_cast<std::uint32_t>(std::lround(std::atan2(along_t, along_s) / kDirectionStep)) & (kDirections - 1);
 }
 
+// Cosine and sine of each direction.
+std::array<std::array<float, 2>, kDirections> direction_table() {
+    std::array<std::array<float, 2>, kDirections> table{};
+    for (std::size_t direction = 0; direction < table.size(); ++direction) {
+        const auto turn = static_cast<float>(static_cast<double>(direction) * kDirectionStep);
+        table[direction] = {std::cos(turn), std::sin(turn)};
+    }
+    return table;
+}
+
 std::uint32_t axis_at(std::uint32_t direction, const TangentFrame& frame) {
-    const auto turn = static_cast<float>(direction * kDirectionStep);
-    const float c = std::cos(turn), s = std::sin(turn);
+    static const auto table = direction_table();
+    const auto [c, s] = table[direction];
     return encode_octahedral(c * frame.s[0] + s * frame.t[0], c * frame.s[1] + s * frame.t[1],
                              c * frame.s[2] + s * frame.t[2]);
 }
 
-PackedPointNode pack(const PointNode& node) {
-    PackedPointNode packed{};
-    std::ranges::copy(pack_place(node.position), packed.place);
-    packed.major = half_at_least(std::min(node.major, kLargestHalf));
-    packed.sphere_radius = half_at_least(std::min(node.sphere_radius, kLargestHalf));
-    const std::uint32_t normal = shorten_normal(node.normal, kNormalBits);
-    const TangentFrame frame = tangents_of(decode_octahedral(lengthen_normal(normal, kNormalBits)));
-    packed.frame = normal | direction_of(decode_octahedral(node.major_axis), frame) << 24;
-    const float ratio = node.major > 0 ? node.minor / float_from_half(packed.major) : 1;
-    packed.ratio =
-        static_cast<std::uint8_t>(std::clamp(std::ceil(ratio * kRatioSteps - kRatioSlack), 0.0f, kRatioSteps));
-    std::copy_n(node.colour, 3, packed.colour);
-    packed.cone_angle = node.cone_angle;
-    packed.extent = node.extent;
-    packed.below = static_cast<std::uint8_t>(node.child_count != 0 ? kInner + node.child_count : node.surfel_count);
-    return packed;
+// The minor half axis in steps of the major one.
+std::uint8_t ratio_of(float minor, float major) {
+    const float ratio = major > 0 ? minor / major : 1;
+    return static_cast<std::uint8_t>(std::clamp(std::ceil(ratio * kRatioSteps - kRatioSlack), 0.0f, kRatioSteps));
+}
+
+std::uint16_t half_length(float length) {
+    return half_at_least(std::min(length, kLargestHalf));
+}
+
+float minor_of(std::uint8_t ratio, float major) {
+    return major * static_cast<float>(ratio) / kRatioSteps;
 }
 
 // All but the links.
@@ -63,7 +69,7 @@ PointNode unpack(const PackedPointNode& packed) {
     PointNode node{};
     unpack_place(packed.place, node.position);
     node.major = float_from_half(packed.major);
-    node.minor = node.major * static_cast<float>(packed.ratio) / kRatioSteps;
+    node.minor = minor_of(packed.ratio, node.major);
     node.sphere_radius = float_from_half(packed.sphere_radius);
     node.normal = lengthen_normal(packed.frame & kNormalMask, kNormalBits);
     node.major_axis = axis_at(packed.frame >> 24, tangents_of(decode_octahedral(node.normal)));
@@ -75,18 +81,42 @@ PointNode unpack(const PackedPointNode& packed) {
 
 }  // namespace
 
-void round_node(PointNode& node) {
-    PointNode rounded = unpack(pack(node));
-    rounded.child_count = node.child_count;
-    rounded.first_child = node.first_child;
-    rounded.first_surfel = node.first_surfel;
-    rounded.surfel_count = node.surfel_count;
-    node = rounded;
+void round_place(PointNode& node) {
+    const auto place = pack_place(node.position);
+    unpack_place({place[0], place[1]}, node.position);
+    node.normal = lengthen_normal(shorten_normal(node.normal, kNormalBits), kNormalBits);
+}
+
+void round_axis(PointNode& node) {
+    const TangentFrame frame = tangents_of(decode_octahedral(node.normal));
+    node.major_axis = axis_at(direction_of(decode_octahedral(node.major_axis), frame), frame);
+}
+
+void round_lengths(PointNode& node) {
+    node.major = float_from_half(half_length(node.major));
+    node.minor = minor_of(ratio_of(node.minor, node.major), node.major);
+    node.sphere_radius = float_from_half(half_length(node.sphere_radius));
+}
+
+PackedPointNode pack_point_node(const PointNode& node) {
+    PackedPointNode packed{};
+    std::ranges::copy(pack_place(node.position), packed.place);
+    packed.major = half_length(node.major);
+    packed.sphere_radius = half_length(node.sphere_radius);
+    const std::uint32_t normal = shorten_normal(node.normal, kNormalBits);
+    const TangentFrame frame = tangents_of(decode_octahedral(lengthen_normal(normal, kNormalBits)));
+    packed.frame = normal | direction_of(decode_octahedral(node.major_axis), frame) << 24;
+    packed.ratio = ratio_of(node.minor, float_from_half(packed.major));
+    std::copy_n(node.colour, 3, packed.colour);
+    packed.cone_angle = node.cone_angle;
+    packed.extent = node.extent;
+    packed.below = static_cast<std::uint8_t>(node.child_count != 0 ? kInner + node.child_count : node.surfel_count);
+    return packed;
 }
 
 std::vector<PackedPointNode> pack_point_tree(std::span<const PointNode> nodes) {
     std::vector<PackedPointNode> packed(nodes.size());
-    std::ranges::transform(nodes, packed.begin(), pack);
+    std::ranges::transform(nodes, packed.begin(), pack_point_node);
     return packed;
 }
 

@@ -8,8 +8,7 @@
 //   major axis  one of 256 directions in half a turn, from s towards t of tangents_of(normal): within 0.36 degrees
 //   lengths     halves, rounded up: larger by less than 0.1 % or 6e-8; the minor axis by less than 1/255 of the major
 //   one
-// Whoever bounds something by a node rounds its place and frame first, then bounds, then rounds the lengths up: see
-// round_node().
+// Whoever bounds something by a node rounds its place and frame first, then bounds, then rounds the lengths up.
 #pragma once
 
 #include "preprocess/model_format/model_format.h"
@@ -42,8 +41,13 @@ struct PointNode {
 /// The most surfels that a leaf may have.
 inline constexpr std::uint32_t kMostLeafSurfels = 127;
 
-/// All but the links of a node, as packing leaves it. Rounding again changes nothing.
-void round_node(format::PointNode& node);
+/// Parts of a node as packing leaves them: position and normal; the major axis, once the normal is rounded; the
+/// lengths. Rounding again changes nothing.
+void round_place(format::PointNode& node);
+void round_axis(format::PointNode& node);
+void round_lengths(format::PointNode& node);
+
+format::PackedPointNode pack_point_node(const format::PointNode& node);
 
 /// Of rounded nodes in the order of a file.
 std::vector<format::PackedPointNode> pack_point_tree(std::span<const format::PointNode> nodes);

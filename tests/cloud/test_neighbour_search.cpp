@@ -109,7 +109,7 @@ TEST_CASE("the processor's vectors find what plain code finds, bit by bit") {
     }
     for (const unsigned k : {3u, 8u, 16u, 17u, 64u}) {
         const std::size_t stride = (k + kListStep - 1) / kListStep * kListStep;
-        const auto search = [&](const auto& add) {
+        const auto search = [&](AddNearPoints add) {
             struct alignas(64) Line {
                 std::array<Neighbour, kListStep> entries;
             };
@@ -129,8 +129,9 @@ TEST_CASE("the processor's vectors find what plain code finds, bit by bit") {
                 found.insert(found.end(), lists.first + q * stride, lists.first + q * stride + k);
             return found;
         };
-        const auto plain = search(add_near_points_plainly);
-        CHECK(search(add_near_points) == plain);
+        const auto plain = search(near_points_adder(NearVectors::kNone));
+        CHECK(search(near_points_adder(NearVectors::k256)) == plain);
+        CHECK(search(near_points_adder(NearVectors::k512)) == plain);
         CHECK(plain[3 * k] == kNoNeighbour);
         CHECK(plain[4 * k] != kNoNeighbour);
     }

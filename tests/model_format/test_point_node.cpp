@@ -36,6 +36,12 @@ PointNode random_node(std::mt19937& random) {
     return node;
 }
 
+void round_node(PointNode& node) {
+    round_place(node);
+    round_axis(node);
+    round_lengths(node);
+}
+
 }  // namespace
 
 TEST_CASE("rounding a point node never shrinks it, and rounding again changes nothing") {

@@ -2,6 +2,7 @@
 
 #include "preprocess/build_model/normal_cone.h"
 #include "preprocess/build_model/patch_octree.h"
+#include "preprocess/large_vector.h"
 #include "preprocess/lod/point_octree.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
@@ -39,7 +40,7 @@ class Assembler {
     Assembler(const UnitCloud& cloud, const CloudSurface& surface) : cloud_(cloud), surface_(surface) {}
 
     Model assemble() {
-        model_.surfels.resize(cloud_.positions.size());
+        model_.surfels = large_vector<format::Surfel>(cloud_.positions.size());
         tbb::parallel_for(std::size_t{0}, model_.surfels.size(), [&](std::size_t point) {
             const std::uint32_t colour = cloud_.colours.empty() ? kWhite : cloud_.colours[point];
             model_.surfels[point] = make_surfel(cloud_.positions[point], surface_.disks[point], colour);
@@ -135,10 +136,10 @@ class Assembler {
     }
 
     void pack() {
-        model_.point_tree.resize(nodes_.size());
+        model_.point_tree = large_vector<format::PackedPointNode>(nodes_.size());
         tbb::parallel_for(std::size_t{0}, nodes_.size(),
                           [&](std::size_t i) { model_.point_tree[i] = pack_point_node(nodes_[i]); });
-        model_.packed_surfels.resize(model_.surfels.size());
+        model_.packed_surfels = large_vector<format::PackedSurfel>(model_.surfels.size());
         tbb::parallel_for(std::size_t{0}, model_.surfels.size(),
                           [&](std::size_t i) { model_.packed_surfels[i] = pack_surfel(model_.surfels[i]); });
         std::vector<format::Surfel>().swap(model_.surfels);

@@ -4,6 +4,7 @@
 #include "preprocess/cloud/neighbour_search.h"
 #include "preprocess/cloud/vicinity.h"
 #include "preprocess/cloud/voronoi_cell.h"
+#include "preprocess/large_vector.h"
 #include "preprocess/model_format/tangent_frame.h"
 
 #include <tbb/blocked_range.h>
@@ -59,9 +60,9 @@ class Estimator {
           search_(cloud.positions) {}
 
     CloudSurface estimate(const Progress& progress) {
-        surface_.disks.resize(points_.size());
-        surface_.neighbours.resize(points_.size());
-        reach_.resize(points_.size());
+        surface_.disks = large_vector<CloudDisk>(points_.size());
+        surface_.neighbours = large_vector<StoredNeighbours>(points_.size());
+        reach_ = large_vector<float>(points_.size());
         // Some steps for the progress, each of many blocks for the threads.
         constexpr std::size_t kSteps = 50;
         for (std::size_t step = 0; step < kSteps; ++step) {
@@ -238,7 +239,7 @@ class Estimator {
             return *place;
         };
         const float largest = kLargest * quantile(kLargestShare), usual = quantile(0.5);
-        std::vector<float> radii(points_.size());
+        std::vector<float> radii = large_vector<float>(points_.size());
         tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t point) {
             radii[point] = surface_.disks[point].radius;
             const StoredNeighbours& stored = surface_.neighbours[point];

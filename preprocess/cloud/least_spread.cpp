@@ -11,7 +11,8 @@ namespace splice {
 namespace {
 
 constexpr int kMostSteps = 12;
-constexpr double kConverged = 1e-12;  // of the trace
+// Of the trace; steps converge quadratically, so what is left after such a one is below rounding.
+constexpr double kConverged = 1e-8;
 // Two rows of the shifted matrix span the plane across the eigenvector unless two eigenvalues are nearly equal: then
 // their cross product is below this share of the trace squared.
 constexpr double kDegenerate = 1e-6;

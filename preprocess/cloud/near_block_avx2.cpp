@@ -30,10 +30,9 @@ SPLICE_WIDE unsigned at_most(__m256 values, __m256 others) {
 
 SPLICE_WIDE unsigned near_box(const PointBlock& own, const PointBlock& other, const NearLists& lists,
                               std::size_t half) {
-    const __m256 to_box =
-        squared_length(beyond(_mm256_load_ps(own.x.data() + half), other.low[0], other.high[0]),
-                       beyond(_mm256_load_ps(own.y.data() + half), other.low[1], other.high[1]),
-                       beyond(_mm256_load_ps(own.z.data() + half), other.low[2], other.high[2]));
+    const __m256 to_box = squared_length(beyond(_mm256_load_ps(own.x.data() + half), other.low[0], other.high[0]),
+                                         beyond(_mm256_load_ps(own.y.data() + half), other.low[1], other.high[1]),
+                                         beyond(_mm256_load_ps(own.z.data() + half), other.low[2], other.high[2]));
     return at_most(to_box, _mm256_load_ps(lists.reach.data() + half));
 }
 

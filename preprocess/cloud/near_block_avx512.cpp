@@ -35,7 +35,7 @@ SPLICE_WIDE __m512d shifted(__m512d list, __m512d before) {
 }  // namespace
 
 __attribute__((target("avx512f"))) void add_near_points_avx512(const PointBlock& own, const PointBlock& other,
-                                                             std::uint32_t first_index, bool same, NearLists& lists) {
+                                                               std::uint32_t first_index, bool same, NearLists& lists) {
     const __m512 own_x = _mm512_load_ps(own.x.data()), own_y = _mm512_load_ps(own.y.data()),
                  own_z = _mm512_load_ps(own.z.data());
     const __m512 to_box =

@@ -10,8 +10,9 @@
 namespace splice {
 
 inline void update_reach(NearLists& lists, std::size_t q) {
-    const Neighbour last = lists.first[q * lists.stride + lists.k - 1];
-    if (last != kNoNeighbour) lists.reach[q] = squared_distance_of(last);
+    // Of kNoNeighbour it is no number, and so not less.
+    const float last = squared_distance_of(lists.first[q * lists.stride + lists.k - 1]);
+    lists.reach[q] = last < lists.reach[q] ? last : lists.reach[q];
 }
 
 #ifdef SPLICE_NEAR_VECTORS

@@ -1,5 +1,7 @@
 #include "preprocess/cloud/neighbour_search.h"
 
+#include "preprocess/large_vector.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -18,8 +20,9 @@ Eigen::Vector4f padded(const Vec3f& v) {
 
 }  // namespace
 
-NeighbourSearch::NeighbourSearch(std::span<const Vec3f> points) : points_(points.size()), blocks_(blocks()) {
-    levels_.emplace_back(blocks());
+NeighbourSearch::NeighbourSearch(std::span<const Vec3f> points)
+    : points_(points.size()), blocks_(large_vector<PointBlock>(blocks())) {
+    levels_.push_back(large_vector<Bounds>(blocks()));
     tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t b) {
         PointBlock& block = blocks_[b];
         block.x.fill(kFarAway);

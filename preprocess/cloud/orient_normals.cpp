@@ -1,6 +1,7 @@
 #include "preprocess/cloud/orient_normals.h"
 
 #include "preprocess/cloud/signed_sets.h"
+#include "preprocess/large_vector.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -50,7 +51,10 @@ struct Vote {
 class Orienter {
   public:
     Orienter(std::span<const Vec3f> positions, std::span<const StoredNeighbours> neighbours, std::span<CloudDisk> disks)
-        : positions_(positions), neighbours_(neighbours), disks_(disks), set_(disks.size()) {}
+        : positions_(positions),
+          neighbours_(neighbours),
+          disks_(disks),
+          set_(large_vector<std::uint32_t>(disks.size())) {}
 
     OrientationStats orient() {
         const std::size_t pieces = (disks_.size() + kPiece - 1) / kPiece;

@@ -1,5 +1,6 @@
 #include "preprocess/cloud/point_columns.h"
 
+#include "preprocess/large_vector.h"
 #include "preprocess/mesh/source_mesh_builder.h"
 
 #include <tbb/parallel_for.h>
@@ -36,9 +37,9 @@ class Gatherer {
             cloud_.withheld_points += block.withheld;
             total += std::exchange(block.usable, total);
         }
-        cloud_.offsets.resize(total);
-        if (columns_.normal[0]) cloud_.normals.resize(total);
-        if (columns_.colour[0] || columns_.packed_rgb) cloud_.colours.resize(total);
+        cloud_.offsets = large_vector<Vec3f>(total);
+        if (columns_.normal[0]) cloud_.normals = large_vector<Vec3f>(total);
+        if (columns_.colour[0] || columns_.packed_rgb) cloud_.colours = large_vector<std::uint32_t>(total);
         tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) { write(b, counts[b].usable); });
         return std::move(cloud_);
     }

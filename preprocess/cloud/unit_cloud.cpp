@@ -1,5 +1,6 @@
 #include "preprocess/cloud/unit_cloud.h"
 
+#include "preprocess/large_vector.h"
 #include "preprocess/mesh/unit_box.h"
 #include "preprocess/model_format/error.h"
 
@@ -65,7 +66,7 @@ UnitBox bounds_of(const std::vector<Vec3f>& points) {
 
 // Equal points are side by side, the first of the file first.
 std::vector<Key> sorted_keys(const std::vector<Vec3f>& positions) {
-    std::vector<Key> keys(positions.size());
+    std::vector<Key> keys = large_vector<Key>(positions.size());
     tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
         keys[i] = {morton_code(positions[i]), static_cast<std::uint32_t>(i)};
     });
@@ -83,7 +84,7 @@ std::vector<Key> sorted_keys(const std::vector<Vec3f>& positions) {
 template <class T>
 std::vector<T> permuted(std::vector<T> values, const std::vector<Key>& keys) {
     if (values.empty()) return {};
-    std::vector<T> result(keys.size());
+    std::vector<T> result = large_vector<T>(keys.size());
     tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { result[i] = values[keys[i].point]; });
     return result;
 }

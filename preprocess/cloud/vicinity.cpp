@@ -22,17 +22,17 @@ using Lanes = std::array<float, kStep>;
 #define SPLICE_INLINE __attribute__((always_inline)) inline
 
 SPLICE_INLINE float sum(Lanes& lanes) {
-    for (std::size_t width = kStep / 2; width > 0; width /= 2)
+    for (std::size_t width = kStep / 2; width >= 4; width /= 2)
         for (std::size_t i = 0; i < width; ++i)
             lanes[i] += lanes[i + width];
-    return lanes[0];
+    return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
 }
 
 SPLICE_INLINE float largest(Lanes& lanes) {
-    for (std::size_t width = kStep / 2; width > 0; width /= 2)
+    for (std::size_t width = kStep / 2; width >= 4; width /= 2)
         for (std::size_t i = 0; i < width; ++i)
             lanes[i] = lanes[i] < lanes[i + width] ? lanes[i + width] : lanes[i];
-    return lanes[0];
+    return std::max(std::max(lanes[0], lanes[2]), std::max(lanes[1], lanes[3]));
 }
 
 SPLICE_INLINE Moments moments_inline(const Vicinity& vicinity, std::size_t count) {

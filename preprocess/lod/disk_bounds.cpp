@@ -37,9 +37,16 @@ void DiskArrays::add(const format::Surfel& surfel) {
     const SurfelExtent extent = decode_extent(surfel.extent, radius);
     const auto normal = decode_octahedral(surfel.normal);
     const float height = larger(extent.above, extent.below);
-    const std::array<float, kComponents> values{
-        surfel.position[0], surfel.position[1], surfel.position[2], normal[0],    normal[1], normal[2],
-        radius,             extent.above,       extent.below,       std::sqrt(radius * radius + height * height)};
+    const std::array<float, kComponents> values{surfel.position[0],
+                                                surfel.position[1],
+                                                surfel.position[2],
+                                                normal[0],
+                                                normal[1],
+                                                normal[2],
+                                                radius,
+                                                extent.above,
+                                                extent.below,
+                                                std::sqrt(radius * radius + height * height)};
     for (std::size_t i = 0; i < kComponents; ++i)
         component_[i].push_back(values[i]);
 }
@@ -73,8 +80,7 @@ DiskBounds bound_disks(const DiskArrays& disks, std::size_t begin, std::size_t e
             up[lane] = larger(up[lane], height + slant + above[i]);
             down[lane] = larger(down[lane], slant + below[i] - height);
             largest[lane] = larger(largest[lane], radius[i]);
-            circle[lane] =
-                larger(circle[lane], std::sqrt(on_major * on_major + on_minor * on_minor) + radius[i]);
+            circle[lane] = larger(circle[lane], std::sqrt(on_major * on_major + on_minor * on_minor) + radius[i]);
         }
     const auto most = [](const Lanes& lanes) { return *std::max_element(lanes.begin(), lanes.end()); };
     DiskBounds bounds{.sphere = most(in_sphere),

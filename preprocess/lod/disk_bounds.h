@@ -37,11 +37,11 @@ struct NodeFrame {
 };
 
 struct DiskBounds {
-    float sphere = 0;                // radius about the centre that holds every disk, its solid included
-    float cosine = 1;                // of the largest angle between a normal and the node's
-    float above = 0, below = 0;      // how far disks leave the plane, at least 0
-    float largest_radius = 0;        // of a disk
-    float major = 0, minor = 0;      // half axes of an ellipse that holds the disks' projections
+    float sphere = 0;            // radius about the centre that holds every disk, its solid included
+    float cosine = 1;            // of the largest angle between a normal and the node's
+    float above = 0, below = 0;  // how far disks leave the plane, at least 0
+    float largest_radius = 0;    // of a disk
+    float major = 0, minor = 0;  // half axes of an ellipse that holds the disks' projections
 };
 
 /// Of disks [begin, end), which are whole steps. In single precision: errors are within 4e-6 of the lengths.

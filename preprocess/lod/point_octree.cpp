@@ -1,5 +1,6 @@
 #include "preprocess/lod/point_octree.h"
 
+#include "preprocess/large_vector.h"
 #include "preprocess/lod/bounding_ellipse.h"
 #include "preprocess/lod/disk_bounds.h"
 #include "preprocess/lod/homogeneous_covariance.h"
@@ -89,8 +90,8 @@ class Builder {
     std::vector<format::PointNode> build(PointSplit split) {
         reorder(split.order);
         nodes_ = std::move(split.nodes);
-        sums_.resize(nodes_.size());
-        thickness_.resize(nodes_.size());
+        sums_ = large_vector<Sums>(nodes_.size());
+        thickness_ = large_vector<Thickness>(nodes_.size());
         const std::vector<std::uint32_t> small = small_roots();
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, small.size()),
                           [&](const tbb::blocked_range<std::size_t>& range) {
@@ -110,7 +111,7 @@ class Builder {
 
   private:
     void reorder(const std::vector<std::uint32_t>& order) {
-        std::vector<format::Surfel> sorted(surfels_.size());
+        std::vector<format::Surfel> sorted = large_vector<format::Surfel>(surfels_.size());
         tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { sorted[i] = surfels_[order[i]]; });
         surfels_ = std::move(sorted);
     }

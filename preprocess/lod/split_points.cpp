@@ -1,5 +1,6 @@
 #include "preprocess/lod/split_points.h"
 
+#include "preprocess/large_vector.h"
 #include "preprocess/lod/point_octree.h"
 
 #include <tbb/parallel_for.h>
@@ -18,8 +19,9 @@ using Counts = std::array<std::uint32_t, 8>;
 
 class Splitter {
   public:
-    explicit Splitter(std::span<const format::Surfel> surfels) : surfels_(surfels), scratch_(surfels.size()) {
-        split_.order.resize(surfels.size());
+    explicit Splitter(std::span<const format::Surfel> surfels)
+        : surfels_(surfels), scratch_(large_vector<std::uint32_t>(surfels.size())) {
+        split_.order = large_vector<std::uint32_t>(surfels.size());
         std::iota(split_.order.begin(), split_.order.end(), 0u);
     }
 

@@ -71,7 +71,8 @@ TEST_CASE("the cell among sixteen neighbours is that which a polygon is cut to")
         const Vicinity vicinity = random_vicinity(random, 1 + static_cast<std::size_t>(i) % 16);
         const CellPlane plane = random_plane(random);
         const float limit = vicinity.distance(vicinity.count - 1);
-        const SmallCell expected = cut_cell(vicinity, plane, limit), found = functions.small_cell(vicinity, plane, limit);
+        const SmallCell expected = cut_cell(vicinity, plane, limit),
+                        found = functions.small_cell(vicinity, plane, limit);
         // Within rounding of the limit either answer is right.
         if (std::abs(expected.reach - limit) < 1e-4f) continue;
         INFO("vicinity " << i);

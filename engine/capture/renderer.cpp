@@ -120,7 +120,7 @@ BudgetedDraws select(const Scene& scene, const CaptureSettings& settings, const 
     anywhere.force_quads = true;
     anywhere.small_px = 0;
     Camera from = *settings.cut_camera;
-    if (settings.clip_to_scene) fit_clip_planes(from, scene.bounds());
+    if (settings.clip_to_scene) fit_clip_planes(from, scene.drawn_bounds());
     BudgetedDraws chosen = build(from, anywhere);
     look_from(chosen.draws, scene, camera);
     return chosen;
@@ -226,7 +226,7 @@ Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
     Implementation& engine = *implementation_;
     check_settings(settings, engine.device.limits());
     Camera camera = settings.camera;
-    if (settings.clip_to_scene) fit_clip_planes(camera, scene.bounds());
+    if (settings.clip_to_scene) fit_clip_planes(camera, scene.drawn_bounds());
 
     Frame frame;
     frame.width = settings.width;
@@ -276,7 +276,7 @@ FrameStats Renderer::render_to(const gpu::Image& destination, const Scene& scene
     }
     check_settings(settings, engine.device.limits());
     Camera camera = settings.camera;
-    if (settings.clip_to_scene) fit_clip_planes(camera, scene.bounds());
+    if (settings.clip_to_scene) fit_clip_planes(camera, scene.drawn_bounds());
     FrameStats stats;
     stats.device = device_name();
     const auto copy = [&](graph::Bindings& bindings, graph::ImageHandle picture) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 namespace splice {
 
@@ -50,6 +51,23 @@ gpu::Image create_texture(gpu::Device& device, const format::Texture& texture, s
     return image;
 }
 
+/// Unit-box units. The triangles of all patches, those of surfels included, are in the file; of a cloud, and where a
+/// patch has none, there is nothing but the bounds of what is drawn.
+std::pair<glm::vec3, glm::vec3> surface_bounds(const ModelView& model) {
+    const auto vector = [](const float(&v)[3]) { return glm::vec3(v[0], v[1], v[2]); };
+    const bool all_triangles = std::ranges::all_of(model.patches, [&](const format::Patch& patch) {
+        return patch.lod_count > 0 && model.lods[patch.first_lod].index_count > 0;
+    });
+    if (!all_triangles || model.vertices.empty())
+        return {vector(model.info->bounds_min), vector(model.info->bounds_max)};
+    glm::vec3 low = vector(model.vertices.front().position), high = low;
+    for (const format::Vertex& vertex : model.vertices) {
+        low = glm::min(low, vector(vertex.position));
+        high = glm::max(high, vector(vertex.position));
+    }
+    return {low, high};
+}
+
 std::span<const std::byte> records_of(const ModelView& model) {
     return model.is_packed() ? std::as_bytes(model.packed_surfels) : std::as_bytes(model.surfels);
 }
@@ -80,6 +98,10 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& pa
       surfels_(device, paged_ ? 0 : model.surfel_count(),
                model.is_packed() ? SurfelRecords::kPacked : SurfelRecords::kPlain, gpu::MemoryUse::device, "surfels"),
       pool_(device) {
+    const auto [low, high] = surface_bounds(model);
+    bounds_ = to_source(low, high);
+    drawn_bounds_ = to_source({info_.bounds_min[0], info_.bounds_min[1], info_.bounds_min[2]},
+                              {info_.bounds_max[0], info_.bounds_max[1], info_.bounds_max[2]});
     const auto buffer = [&](const char* name, VkBufferUsageFlags usage, std::span<const std::byte> bytes) {
         gpu::Buffer result(device, {.size = bytes.size(), .usage = usage, .name = name});
         gpu::upload(device, result, bytes);
@@ -179,12 +201,9 @@ void GpuModel::unpack_surfels(std::span<const std::byte> records, std::uint64_t 
     }
 }
 
-Box GpuModel::bounds() const {
-    Box box;
-    for (const float* corner : {info_.bounds_min, info_.bounds_max})
-        box.extend(glm::dvec3(corner[0], corner[1], corner[2]) * info_.source_scale +
-                   glm::dvec3(info_.source_offset[0], info_.source_offset[1], info_.source_offset[2]));
-    return box;
+Box GpuModel::to_source(const glm::dvec3& low, const glm::dvec3& high) const {
+    const glm::dvec3 offset(info_.source_offset[0], info_.source_offset[1], info_.source_offset[2]);
+    return {low * info_.source_scale + offset, high * info_.source_scale + offset};
 }
 
 }  // namespace splice

@@ -61,8 +61,10 @@ class GpuModel {
     /// A record (ellipse_record.h) for each node of the hierarchy.
     std::span<const format::Surfel> ellipses() const { return ellipses_; }
     VkDescriptorSet material_set(std::uint32_t material) const { return material_sets_[material]; }
-    /// Source units.
-    Box bounds() const;
+    /// Of the surface that it was baked from, whatever represents it; source units. Pictures are framed by it.
+    const Box& bounds() const { return bounds_; }
+    /// Of all that is drawn: disks overhang the surface.
+    const Box& drawn_bounds() const { return drawn_bounds_; }
 
   private:
     GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
@@ -70,8 +72,10 @@ class GpuModel {
     void make_ellipses(const ModelView& model, const std::vector<format::PointNode>& tree);
     void page(const ModelView& model, const Paging& paging);
     void create_materials(gpu::Device& device, const ModelView& model);
+    Box to_source(const glm::dvec3& low, const glm::dvec3& high) const;  // from unit-box units
 
     format::ModelInfo info_{};
+    Box bounds_, drawn_bounds_;
     std::vector<format::Patch> patches_;
     std::vector<format::Lod> lods_;
     std::vector<format::OctreeNode> octree_;

@@ -21,10 +21,12 @@ Lighting default_lighting() {
     return lighting;
 }
 
-Box Scene::bounds() const {
+namespace {
+
+Box bounds_of(const std::vector<Instance>& instances, const Box& (GpuModel::*which)() const) {
     Box all;
     for (const Instance& instance : instances) {
-        const Box box = instance.model->bounds();
+        const Box& box = ((*instance.model).*which)();
         if (box.empty()) continue;
         const Transform& transform = instance.transform;
         for (int corner = 0; corner < 8; ++corner) {
@@ -35,6 +37,16 @@ Box Scene::bounds() const {
         }
     }
     return all;
+}
+
+}  // namespace
+
+Box Scene::bounds() const {
+    return bounds_of(instances, &GpuModel::bounds);
+}
+
+Box Scene::drawn_bounds() const {
+    return bounds_of(instances, &GpuModel::drawn_bounds);
 }
 
 Scene scene_of(std::shared_ptr<const GpuModel> model) {

@@ -66,7 +66,8 @@ struct Scene {
     std::vector<Instance> instances;
     Lighting lighting = default_lighting();
     Background background;
-    Box bounds() const;  // of all instances, world units
+    Box bounds() const;        // of all instances' surfaces, world units: what a picture is framed by
+    Box drawn_bounds() const;  // of their disks, too: what clip planes must hold
 };
 
 /// One model as it is, in the coordinates of its file, under the default lights.

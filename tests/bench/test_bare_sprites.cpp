@@ -13,7 +13,7 @@ TEST_CASE("bare sprites and the sprite backend draw the same picture") {
     bench::BareSprites bare("auto", sphere);
     CaptureSettings settings;
     settings.camera.eye = {0.2, 0.1, 2.5};
-    fit_clip_planes(settings.camera, scene.bounds());
+    fit_clip_planes(settings.camera, scene.drawn_bounds());
     for (const std::uint32_t side : {128u, 61u}) {
         settings.width = settings.height = side;
         const Frame frame = renderer.render(scene, settings);

@@ -75,6 +75,21 @@ Gain gain_of(const IndexedMesh& mesh, std::uint32_t antialias, Backend backend) 
 
 }  // namespace
 
+TEST_CASE("a mesh is framed alike whatever represents it") {
+    RepairReport report;
+    const IndexedMesh mesh = repair_mesh(shapes::bumpy_sphere(2000), RepairOptions{}, report, "shape");
+    Renderer renderer{RendererOptions{}};
+    const BakedModel triangles = bake_for(renderer, mesh, {}, ForcedRepresentation::kTriangles);
+    const BakedModel surfels = bake_for(renderer, mesh, {}, ForcedRepresentation::kSurfels);
+    const Box box = scene_of(triangles.on_device).bounds(), other = scene_of(surfels.on_device).bounds();
+    CHECK(box.minimum == other.minimum);
+    CHECK(box.maximum == other.maximum);
+    // Disks overhang the surface, and clip planes must hold them.
+    const Box drawn = scene_of(surfels.on_device).drawn_bounds();
+    CHECK(drawn.minimum.x < box.minimum.x);
+    CHECK(drawn.maximum.z > box.maximum.z);
+}
+
 TEST_CASE("several samples a pixel make outlines truer and lose nothing inside") {
     RepairReport report;
     const IndexedMesh sphere = repair_mesh(shapes::bumpy_sphere(100000), RepairOptions{}, report, "shape");

@@ -86,7 +86,7 @@ void measure(Renderer& renderer, const BenchScene& bench, const FrameBenchOption
         settings.height = height;
         settings.camera = bench.camera;
         if (bench.model.surfels.empty()) settings.camera = frame_camera(bench.scene.bounds(), {}, width, height);
-        fit_clip_planes(settings.camera, bench.scene.bounds());
+        fit_clip_planes(settings.camera, bench.scene.drawn_bounds());
         settings.want_overlap = true;
         const FrameStats counted = renderer.render(bench.scene, settings).stats;
         settings.want_overlap = false;

@@ -47,7 +47,7 @@ struct SphereFrame {
         settings.width = width;
         settings.height = height;
         settings.camera = frame_camera(scene.bounds(), {}, width, height);
-        fit_clip_planes(settings.camera, scene.bounds());
+        fit_clip_planes(settings.camera, scene.drawn_bounds());
         DrawListOptions options;
         options.max_point_size = device.features().large_points ? device.limits().pointSizeRange[1] : 0;
         draws = build_draw_list(scene, settings.camera, width, height, options);

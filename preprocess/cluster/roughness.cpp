@@ -14,7 +14,7 @@
 namespace splice {
 namespace {
 
-constexpr std::size_t kFine = 3;  // grid cells a radius
+constexpr std::size_t kFine = 2;  // grid cells a radius
 constexpr float kFineSide = kRoughnessRadius / kFine;
 constexpr std::size_t kBlocksPerSide = 51;  // blocks of one radius across the unit box, one to spare
 constexpr std::size_t kCellsPerBlock = kFine * kFine * kFine;

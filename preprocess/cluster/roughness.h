@@ -20,7 +20,7 @@ struct FaceRoughness {
         triangles;  // how many of the ball's triangles fit on a disk of its radius: low for coarse meshes
 };
 
-/// The surface is summed into grid cells of a third of the radius, apart for different directions, and cells are
+/// The surface is summed into grid cells of half the radius, apart for different directions, and cells are
 /// compared with cells. O(faces + area / radius^2); deterministic for any number of threads.
 FaceRoughness measure_roughness(const IndexedMesh& mesh, const FaceGraph& faces);
 

@@ -115,14 +115,30 @@ struct ReferenceScene::Impl {
         return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kNothing : hit.ray.tfar;
     }
 
+    static Ray in_mesh_space(const Ray& eye, const glm::dmat4& to_mesh) {
+        return {glm::dvec3(to_mesh * glm::dvec4(eye.origin, 1)), glm::dvec3(to_mesh * glm::dvec4(eye.direction, 0))};
+    }
+
     /// At a window position: the distance along the view direction, or kNothing. `to_mesh`: from eye to mesh space.
     float depth_through(const ReferenceView& view, const glm::dmat4& to_mesh, double x, double y) const {
         const Ray eye = pixel_ray(view, x, y);
-        const Ray ray{glm::dvec3(to_mesh * glm::dvec4(eye.origin, 1)),
-                      glm::dvec3(to_mesh * glm::dvec4(eye.direction, 0))};
         RTCRayHit record;
-        const float t = cast(ray, record);
+        const float t = cast(in_mesh_space(eye, to_mesh), record);
         return t == kNothing ? kNothing : static_cast<float>(t * -eye.direction.z);
+    }
+
+    /// What the triangle that is met at one window position shows at another if it is moved there: its plane's depth.
+    float depth_moved(const ReferenceView& view, const glm::dmat4& to_mesh, const glm::dvec2& met_at,
+                      const glm::dvec2& shown_at) const {
+        const Ray beside = in_mesh_space(pixel_ray(view, met_at.x, met_at.y), to_mesh);
+        RTCRayHit record;
+        const float t = cast(beside, record);
+        if (t == kNothing) return kNothing;
+        const Ray eye = pixel_ray(view, shown_at.x, shown_at.y), ray = in_mesh_space(eye, to_mesh);
+        const glm::dvec3 normal(record.hit.Ng_x, record.hit.Ng_y, record.hit.Ng_z);
+        const glm::dvec3 met = beside.origin + double{t} * beside.direction;
+        const double distance = glm::dot(met - ray.origin, normal) / glm::dot(ray.direction, normal);
+        return static_cast<float>((std::isfinite(distance) ? distance : double{t}) * -eye.direction.z);
     }
 
     SurfacePoint point(const RTCHit& hit, const glm::vec3& position, const glm::vec3& to_eye) const {
@@ -182,6 +198,14 @@ DepthRange ReferenceScene::range_in_pixel(const ReferenceView& view, std::uint32
         for (std::uint32_t i = 0; i < samples_per_side; ++i)
             range.include(impl_->depth_through(view, to_mesh, x + (i + 0.5) / samples_per_side,
                                                y + (j + 0.5) / samples_per_side));
+    constexpr double kSnap = 1.0 / 512;  // pixels: how far rasterisers move corners
+    const glm::dvec2 centre(x + 0.5, y + 0.5);
+    for (const double dy : {-kSnap, 0.0, kSnap})
+        for (const double dx : {-kSnap, 0.0, kSnap}) {
+            const glm::dvec2 aside(dx, dy);
+            range.include(impl_->depth_moved(view, to_mesh, centre + aside, centre));
+            range.include(impl_->depth_moved(view, to_mesh, centre + aside, centre - aside));
+        }
     return range;
 }
 
@@ -200,8 +224,7 @@ ColourImage ReferenceScene::shaded(const ReferenceView& view, const Shader& shad
                 const double dx = (s % samples_per_side + jitter(x, y, 2 * s)) * stratum;
                 const double dy = (s / samples_per_side + jitter(x, y, 2 * s + 1)) * stratum;
                 const Ray eye = pixel_ray(view, x + dx, y + dy);
-                const Ray ray{glm::dvec3(to_mesh * glm::dvec4(eye.origin, 1)),
-                              glm::dvec3(to_mesh * glm::dvec4(eye.direction, 0))};
+                const Ray ray = Impl::in_mesh_space(eye, to_mesh);
                 SurfacePoint point;
                 double distance = 0;
                 sum +=

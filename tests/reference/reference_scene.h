@@ -53,7 +53,9 @@ class ReferenceScene {
     /// One ray a pixel, through its centre.
     DepthImage depth(const ReferenceView& view) const;
 
-    /// Of a grid of `samples_per_side`^2 rays through one pixel.
+    /// Of a grid of `samples_per_side`^2 rays through one pixel, and of what rasterisers may show at its centre: they
+    /// move corners by half a 256th of a pixel, so where an outline passes through the centre, either side of it, and
+    /// where a wall is seen from its edge, a little of its depth either way.
     DepthRange range_in_pixel(const ReferenceView& view, std::uint32_t x, std::uint32_t y,
                               std::uint32_t samples_per_side = 16) const;
 

@@ -140,3 +140,42 @@ TEST_CASE("a uniformly scaled instance is seen at its world distance") {
                              flip_y(glm::perspective(0.5, 1.0, 0.1, 100.0)), 9, 9};
     CHECK(scene.depth(view).at(4, 4) == Approx(8).margin(0.02));
 }
+
+TEST_CASE("where an outline passes through a pixel's centre, either side of it is what the pixel may show") {
+    // A plate whose edge is the plane x = 0, and behind it a steep slope: the depth there, 4 - x, changes from pixel to
+    // pixel by more than a depth buffer's rounding, so no ray beside the centre finds the very depth at it.
+    IndexedMesh mesh;
+    mesh.positions = {{-3, -3, 1}, {0, -3, 1}, {0, 3, 1}, {-3, 3, 1}, {-3, -3, -3}, {3, -3, 3}, {3, 3, 3}, {-3, 3, -3}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    mesh.corner_normals.assign(12, Vec3f::UnitZ());
+    mesh.materials.push_back({});
+    const ReferenceScene scene(mesh);
+    // 9 pixels over 4.5 units: the middle one's centre looks along x = 0.
+    ReferenceView view;
+    view.view = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -4));
+    view.projection = flip_y(glm::orthoRH_ZO(-2.25, 2.25, -2.25, 2.25, 0.1, 10.0));
+    view.width = view.height = 9;
+    const DepthRange range = scene.range_in_pixel(view, 4, 4);
+    CHECK(range.nearest == Approx(3));
+    CHECK(range.farthest == Approx(4 + 0.5 / 512));  // the grid's nearest ray beside it meets 4 - 1/64
+    // A pixel to the left there is the plate alone.
+    CHECK(scene.range_in_pixel(view, 3, 4).farthest == Approx(3));
+}
+
+TEST_CASE("a wall seen from its edge may show a little nearer or farther, as its corners are moved") {
+    // The wall x = 0.01 z: 100 deep where it is a pixel wide.
+    IndexedMesh mesh;
+    mesh.positions = {{-0.5f, -3, -50}, {0.5f, -3, 50}, {0.5f, 3, 50}, {-0.5f, 3, -50}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.corner_normals.assign(6, Vec3f::UnitX());
+    mesh.materials.push_back({});
+    const ReferenceScene scene(mesh);
+    ReferenceView view;
+    view.view = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -60));
+    view.projection = flip_y(glm::orthoRH_ZO(-4.5, 4.5, -4.5, 4.5, 0.1, 200.0));
+    view.width = view.height = 9;
+    // One ray, through the centre, and no others: what the grid's would find is left out.
+    const DepthRange range = scene.range_in_pixel(view, 4, 4, 1);
+    CHECK(range.nearest == Approx(60 - 100.0 / 512));
+    CHECK(range.farthest == Approx(60 + 100.0 / 512));
+}

@@ -2,6 +2,7 @@
 // 2004.
 #include "preprocess/surfel/voronoi_cover.h"
 
+#include "preprocess/surfel/claim_cells.h"
 #include "preprocess/surfel/surface_point.h"
 
 #include <algorithm>
@@ -17,33 +18,10 @@ constexpr float kClaimDistance = 1.1f;   // of the spacing: no site owns cells w
 constexpr float kRelaxDistance = 0.9f;   // the same while sites still move; the few cells beyond do not matter
 constexpr float kRoundingSlack = 1e-6f;  // unit-box units; see cover_cells.cpp
 
-// What decides whether a site's disk may cover a cell, apart from their normals. The loops over cells that use it are
-// written without branches, so that they compile to vector instructions.
-struct Reach {
-    float x, y, z, nx, ny, nz, limit2, off_plane;
-
-    Reach(const CoverSite& site, float distance)
-        : x(site.position.x()),
-          y(site.position.y()),
-          z(site.position.z()),
-          nx(site.normal.x()),
-          ny(site.normal.y()),
-          nz(site.normal.z()),
-          limit2(distance * distance),
-          off_plane(kMostOffPlane * site.spacing) {}
-
-    bool covers(float px, float py, float pz, float& distance2) const {
-        const float dx = px - x, dy = py - y, dz = pz - z;
-        const float plane = dx * nx + dy * ny + dz * nz;
-        distance2 = dx * dx + dy * dy + dz * dz;
-        return (distance2 <= limit2) & (std::abs(plane) <= off_plane);
-    }
-};
-
 // Calls visit(cell, squared distance) for the cells whose centre is within `distance` of a site that may cover them.
 template <typename Visit>
 void for_each_coverable(const CoverCells& cells, const CoverSite& site, float distance, Visit&& visit) {
-    const Reach reach(site, distance);
+    const SiteReach reach(site, distance);
     cells.for_each_range_near(site.position, distance, site.normal, [&](std::uint32_t first, std::uint32_t end) {
         for (std::uint32_t i = first; i < end; ++i) {
             float distance2 = 0;
@@ -58,18 +36,8 @@ CoverSite site_at(const IndexedMesh& mesh, const CellChunk& chunk, const Vec3f& 
             chunk.spacing, chunk.triangle, 0};
 }
 
-// The cells of a range that a site may cover and that are nearer to it than to their owners change hands.
-void claim_range(const Reach reach, const float scale, const std::uint32_t index, const std::uint32_t count,
-                 const float* __restrict x, const float* __restrict y, const float* __restrict z,
-                 float* __restrict nearest, std::uint32_t* __restrict owner) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-        float squared = 0;
-        const bool covers = reach.covers(x[i], y[i], z[i], squared);
-        const float scaled = squared * scale, before = nearest[i];
-        const bool takes = covers & (scaled < before);
-        nearest[i] = takes ? scaled : before;
-        owner[i] = takes ? index : owner[i];
-    }
+CellRange range_of(const CoverCells& cells, std::uint32_t first, std::uint32_t end) {
+    return {&cells.x[first], &cells.y[first], &cells.z[first], end - first};
 }
 
 // The Voronoi diagram of the sites over the cells, distances in units of each site's spacing.
@@ -80,13 +48,12 @@ struct Diagram {
     explicit Diagram(std::size_t cells) : owner(cells, kNoSite), distance2(cells, std::numeric_limits<float>::max()) {}
 
     void claim(const CoverCells& cells, const CoverSite& site, std::uint32_t index, float distance) {
-        const Reach reach(site, distance * site.spacing);
+        const SiteReach reach(site, distance * site.spacing);
         const float scale = 1 / (site.spacing * site.spacing);
-        cells.for_each_range_near(site.position, distance * site.spacing, site.normal,
-                                  [&](std::uint32_t first, std::uint32_t end) {
-                                      claim_range(reach, scale, index, end - first, &cells.x[first], &cells.y[first],
-                                                  &cells.z[first], &distance2[first], &owner[first]);
-                                  });
+        cells.for_each_range_near(
+            site.position, distance * site.spacing, site.normal, [&](std::uint32_t first, std::uint32_t end) {
+                claim_cells(reach, scale, index, range_of(cells, first, end), &distance2[first], &owner[first]);
+            });
     }
 };
 
@@ -102,7 +69,7 @@ Diagram diagram_of(const CoverCells& cells, const std::vector<CoverSite>& sites,
 std::vector<CoverSite> throw_darts(const IndexedMesh& mesh, const CoverCells& cells) {
     const std::size_t n = cells.size();
     std::vector<CoverSite> sites;
-    std::vector<std::uint8_t> blocked(n, 0);
+    std::vector<std::uint32_t> blocked(n, 0);
     // Cells lie in Morton order, so stepping by the golden section visits them well spread. A step coprime to n meets
     // all.
     auto step = std::max<std::size_t>(1, static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)));
@@ -111,8 +78,12 @@ std::vector<CoverSite> throw_darts(const IndexedMesh& mesh, const CoverCells& ce
     for (std::size_t k = 0, i = 0; k < n; ++k, i = (i + step) % n) {
         if (blocked[i] != 0) continue;
         sites.push_back(site_at(mesh, cells.chunks[cells.chunk_of[i]], cells.centre(i)));
-        for_each_coverable(cells, sites.back(), kDartDistance * sites.back().spacing,
-                           [&](std::uint32_t cell, float) { blocked[cell] = 1; });
+        const CoverSite& site = sites.back();
+        const float distance = kDartDistance * site.spacing;
+        const SiteReach reach(site, distance);
+        cells.for_each_range_near(site.position, distance, site.normal, [&](std::uint32_t first, std::uint32_t end) {
+            mark_cells(reach, range_of(cells, first, end), &blocked[first]);
+        });
     }
     return sites;
 }

@@ -23,6 +23,11 @@ double median_of(const std::vector<json>& runs, const json::json_pointer& figure
     return median(std::move(values));
 }
 
+/// Null where nothing is surfels.
+std::string figure_or_dash(const json& figure, int digits) {
+    return figure.is_null() ? "-" : fmt::format("{:.{}f}", figure.get<double>(), digits);
+}
+
 }  // namespace
 
 json bench_bake(const std::vector<BenchModel>& models, const BakeBenchOptions& options) {
@@ -66,10 +71,9 @@ json bench_bake(const std::vector<BenchModel>& models, const BakeBenchOptions& o
                          : "",
                      fmt::format("{}/{}", last.at("/patches/triangle"_json_pointer).get<std::uint64_t>(),
                                  last.at("/patches/surfel"_json_pointer).get<std::uint64_t>()),
-                     fmt::format("{:.3f}", last.at("/selection/auc"_json_pointer).get<double>()),
-                     fmt::format("{:.0f}", surfels),
+                     figure_or_dash(last.at("/selection/auc"_json_pointer), 3), fmt::format("{:.0f}", surfels),
                      model.published && surfels > 0 ? fmt::format("{:.1f}", model.published->surfels / surfels) : "",
-                     fmt::format("{:.2f}", last.at("/output/coverage_mean"_json_pointer).get<double>()),
+                     figure_or_dash(last.at("/output/coverage_mean"_json_pointer), 2),
                      fmt::format("{:.1f}", last.at("/output/file_bytes"_json_pointer).get<double>() / 1e6)});
         report.push_back({{"model", model.name},
                           {"median_seconds", seconds},

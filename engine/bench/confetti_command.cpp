@@ -1,5 +1,6 @@
 #include "engine/bench/confetti_command.h"
 
+#include "engine/bench/report_files.h"
 #include "engine/bench/table.h"
 #include "engine/capture/capture.h"
 #include "preprocess/build_model/build_model.h"
@@ -183,7 +184,6 @@ const CLI::App& add_confetti_command(CLI::App& app, ConfettiCommand& command) {
 }
 
 void run_confetti_command(const ConfettiCommand& command) {
-    if (!command.json.empty()) check_output_path(command.json);
     if (!parse_kernel(command.kernel)) throw UsageError("--kernel: no such kernel: \"" + command.kernel + "\"");
     std::vector<std::filesystem::path> files = command.files;
     if (files.empty())
@@ -191,6 +191,7 @@ void run_confetti_command(const ConfettiCommand& command) {
                                  "pointclouds/autzen_trim.las", "meshes/igea.ply"})
             if (std::filesystem::exists(command.folder / name)) files.push_back(command.folder / name);
     if (files.empty()) throw UsageError("no model in " + command.folder.string() + "; name files or use --models");
+    check_report_files(named_files("FILE", files), {{"--json", command.json}});
     Bench bench(command);
     for (const std::filesystem::path& file : files)
         bench.measure(file);

@@ -1,5 +1,6 @@
 #include "engine/bench/costs_command.h"
 
+#include "engine/bench/report_files.h"
 #include "engine/bench/table.h"
 #include "engine/capture/calibrate.h"
 #include "engine/capture/load_scene.h"
@@ -103,7 +104,7 @@ const CLI::App& add_costs_command(CLI::App& app, CostsCommand& command) {
 }
 
 void run_costs_command(const CostsCommand& command) {
-    if (!command.json.empty()) check_output_path(command.json);
+    check_report_files(files_of_scenes("FILE", command.files), {{"--json", command.json}});
     CaptureSettings settings;
     std::tie(settings.width, settings.height) = parse_size(command.size);
     const std::optional<Backend> backend = find_named(kBackendNames, command.backend);

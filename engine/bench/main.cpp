@@ -8,6 +8,7 @@
 #include "engine/bench/frame/frame_command.h"
 #include "engine/bench/graph/graph_command.h"
 #include "engine/bench/quality_command.h"
+#include "engine/bench/report_files.h"
 #include "engine/capture/picture_size.h"
 #include "engine/scene/scene_file.h"
 #include "preprocess/build_model/program_main.h"
@@ -76,6 +77,13 @@ ForcedRepresentation representation_of_name(const std::string& name) {
     if (name == "triangles") return ForcedRepresentation::kTriangles;
     if (name == "surfels") return ForcedRepresentation::kSurfels;
     throw CLI::ValidationError("--representation", "'" + name + "' is none of hybrid, triangles, surfels");
+}
+
+void check_files(const std::vector<bench::BenchModel>& models, const fs::path& report) {
+    std::vector<NamedFile> inputs;
+    for (const bench::BenchModel& model : models)
+        inputs.push_back({"MESH", model.path});
+    bench::check_report_files(inputs, {{"--json", report}});
 }
 
 int run(int argc, char** argv) {
@@ -178,16 +186,17 @@ int run(int argc, char** argv) {
     bool clean = true;
     if (bake.parsed()) {
         report_file = line.json;
-        if (!report_file.empty()) check_output_path(report_file);
-        report = bench::bench_bake(bench::bench_models(line.files, line.folder), line.bake);
+        const auto models = bench::bench_models(line.files, line.folder);
+        check_files(models, report_file);
+        report = bench::bench_bake(models, line.bake);
     } else {
         CommandLine& chosen = capture.parsed() ? capture_line : holes_line;
         std::tie(chosen.quality.width, chosen.quality.height) = parse_size(chosen.size);
         SamplingOptions& sampling = chosen.quality.bake.sampling;
         sampling.h_min = std::min(sampling.h_min, sampling.h_max);
         report_file = chosen.json;
-        if (!report_file.empty()) check_output_path(report_file);
         const auto models = bench::bench_models(chosen.files, chosen.folder);
+        check_files(models, report_file);
         report = capture.parsed() ? bench::bench_capture(models, chosen.quality)
                                   : bench::bench_holes(models, chosen.quality);
         clean = report.value("clean", true);

@@ -3,6 +3,7 @@
 #include "engine/bench/bench_models.h"
 #include "engine/bench/bench_view.h"
 #include "engine/bench/bumpy_sphere.h"
+#include "engine/bench/report_files.h"
 #include "engine/bench/table.h"
 #include "engine/bench/world_mesh.h"
 #include "engine/capture/camera_path.h"
@@ -231,7 +232,10 @@ void run_quality_command(const QualityCommand& command) {
     const std::vector<Picked> subjects =
         command.subjects.empty() ? thesis_models(command.folder) : picked(command.subjects);
     const std::vector<std::pair<Shading, std::uint32_t>> modes = modes_of(command);
-    if (!command.json.empty()) check_output_path(command.json);
+    std::vector<std::filesystem::path> files;
+    for (const Picked& subject : subjects)
+        if (subject.disks == 0) files.emplace_back(subject.name);
+    check_report_files(files_of_scenes("SUBJECT", files), {{"--json", command.json}});
     Renderer renderer({command.device, false});
     nlohmann::json report = {{"device", renderer.device_name()},
                              {"size", {settings.width, settings.height}},

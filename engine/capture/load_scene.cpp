@@ -26,6 +26,7 @@ LoadedScene upload_scene(const PreparedScene& prepared, Renderer& renderer, std:
     LoadedScene loaded;
     loaded.description = prepared.description;
     loaded.warnings = prepared.warnings;
+    loaded.companions = prepared.companions;
     std::map<const HostModel*, std::shared_ptr<const GpuModel>> uploaded;
     double all_bytes = 0;
     for (const auto& model : std::set(prepared.models.begin(), prepared.models.end()))

@@ -14,6 +14,7 @@ struct LoadedScene {
     SceneDescription description;
     Scene scene;
     std::vector<std::string> warnings;
+    std::vector<std::filesystem::path> companions;  // of PreparedScene
 };
 
 /// Models that a scene names twice are loaded once. Of surfels no more than `memory` bytes are held, shared among the

@@ -44,8 +44,8 @@ using ModelKey = std::tuple<std::string, std::map<std::string, double>, SceneRep
 
 class Preparer {
   public:
-    Preparer(const PrepareOptions& options, const Progress& progress, std::vector<std::string>& warnings)
-        : options_(options), progress_(progress), warnings_(warnings) {}
+    Preparer(const PrepareOptions& options, const Progress& progress, PreparedScene& prepared)
+        : options_(options), progress_(progress), prepared_(prepared) {}
 
     std::shared_ptr<const HostModel> prepare(const SceneModel& model, const std::string& scene_name,
                                              const std::string& place) {
@@ -95,7 +95,9 @@ class Preparer {
         }
         BakeStats stats;
         auto baked = std::make_shared<const HostModel>(bake_file(path, bake_options(model), stats, progress_));
-        warnings_.insert(warnings_.end(), stats.warnings.begin(), stats.warnings.end());
+        const auto append = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+        append(prepared_.warnings, stats.warnings);
+        append(prepared_.companions, stats.companions);
         return baked;
     }
 
@@ -110,7 +112,7 @@ class Preparer {
 
     const PrepareOptions& options_;
     const Progress& progress_;
-    std::vector<std::string>& warnings_;
+    PreparedScene& prepared_;  // its warnings and companions
     std::map<ModelKey, std::shared_ptr<const HostModel>> models_;
 };
 
@@ -148,7 +150,7 @@ PreparedScene prepare_scene(const std::vector<std::filesystem::path>& paths, con
             prepared.description.models.push_back(std::move(model));
         }
     }
-    Preparer preparer(options, progress, prepared.warnings);
+    Preparer preparer(options, progress, prepared);
     const std::string name = paths.size() == 1 ? paths.front().string() : "";
     for (std::size_t i = 0; i < prepared.description.models.size(); ++i)
         prepared.models.push_back(

@@ -39,6 +39,7 @@ struct PreparedScene {
     SceneDescription description;                          // of models and meshes: default lights, default framing
     std::vector<std::shared_ptr<const HostModel>> models;  // one an entry of description.models; equal ones are one
     std::vector<std::string> warnings;
+    std::vector<std::filesystem::path> companions;  // files that were read because a mesh names them
 };
 
 struct PrepareOptions {

@@ -5,6 +5,7 @@
 #include "engine/capture/load_scene.h"
 #include "engine/capture/png_file.h"
 #include "engine/capture/stats_json.h"
+#include "preprocess/build_model/counted.h"
 #include "preprocess/build_model/distinct_files.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/build_model/stage_display.h"
@@ -63,19 +64,18 @@ std::filesystem::path picture_path(const CaptureCommand& command, std::size_t in
     return command.orbit > 0 ? numbered(command.output, index, command.orbit) : command.output;
 }
 
-void check_files(const CaptureCommand& command) {
+// `companions`: materials and textures that meshes name, known once they are read.
+void check_files(const CaptureCommand& command, const std::vector<std::filesystem::path>& companions = {}) {
     std::vector<NamedFile> inputs, outputs;
     for (const std::filesystem::path& file : files_of_scene(command.input))
         inputs.push_back({inputs.empty() ? "INPUT" : "the scene's model", file});
+    for (const std::filesystem::path& companion : companions)
+        inputs.push_back({"a mesh's material or texture", companion});
     for (std::size_t i = 0; i < std::max(command.orbit, 1U); ++i)
         outputs.push_back({"--output", picture_path(command, i)});
     if (command.stats) outputs.push_back({"--stats", *command.stats});
     if (command.graph) outputs.push_back({"--graph", *command.graph});
     check_distinct_files(inputs, outputs);
-}
-
-std::string counted(std::uint64_t count, const std::string& noun) {
-    return std::to_string(count) + ' ' + noun + (count == 1 ? "" : "s");
 }
 
 int capture(const CaptureCommand& command) {
@@ -85,6 +85,7 @@ int capture(const CaptureCommand& command) {
     if (command.graph) check_output_path(*command.graph);
     Renderer renderer(command.renderer);
     const LoadedScene loaded = load(command, renderer);
+    check_files(command, loaded.companions);
     CaptureSettings settings = settings_of(command, loaded.description);
     if (command.calibrate) settings.costs = calibrate(renderer, settings.backend).costs;
 

@@ -1,6 +1,7 @@
 #include "engine/scene/scene_file.h"
 
 #include "engine/scene/json_value.h"
+#include "preprocess/mesh/text_scanner.h"
 #include "preprocess/model_format/error.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -240,9 +241,32 @@ void read_render(const JsonValue& value, SceneDescription& scene) {
     }
 }
 
-std::size_t line_of(std::string_view text, std::size_t byte) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
-    return 1 + static_cast<std::size_t>(std::count(text.begin(), end, '\n'));
+std::string place_of(std::string_view text, std::size_t byte) {
+    const std::string_view before = text.substr(0, byte);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t column = 1 + before.size() - (before.rfind('\n') + 1);  // npos + 1 is 0
+    return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+/// What comes after `mark` in a message of the JSON library; all of it where there is no mark.
+std::string_view after(std::string_view message, std::string_view mark) {
+    const std::size_t at = message.find(mark);
+    return at == std::string_view::npos ? message : message.substr(at + mark.size());
+}
+
+nlohmann::json parse_json(std::string_view text, const std::string& name) {
+    try {
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;  // counted from 1
+        throw InputError(name, place_of(text, byte), "not valid JSON: " + printable(after(error.what(), " - ")));
+    } catch (const nlohmann::json::exception& error) {
+        // "... number overflow parsing '1e999'": says which one, not where.
+        std::string_view number = after(error.what(), "parsing '");
+        number = number.substr(0, number.find('\''));
+        throw InputError(name, place_of(text, text.find(number)),
+                         "not valid JSON: the number " + printable(number) + " is out of range");
+    }
 }
 
 }  // namespace
@@ -274,14 +298,7 @@ std::optional<glm::dvec3> parse_colour(std::string_view text) {
 }
 
 SceneDescription parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder) {
-    nlohmann::json json;
-    try {
-        json = nlohmann::json::parse(text);
-    } catch (const nlohmann::json::parse_error& error) {
-        throw InputError(name, "line " + std::to_string(line_of(text, error.byte)), "not valid JSON");
-    } catch (const nlohmann::json::exception&) {
-        throw InputError(name, "", "not valid JSON: a number is out of range");
-    }
+    const nlohmann::json json = parse_json(text, name);
     const JsonValue root(json, name);
     root.expect_members({"models", "camera", "lighting", "background", "render", "bookmarks"});
     SceneDescription scene;

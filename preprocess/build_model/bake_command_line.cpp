@@ -83,9 +83,7 @@ fs::path default_output(const fs::path& input) {
 }
 
 void check_consistency(const BakeCommand& command) {
-    std::vector<NamedFile> outputs = {{"--output", command.output}};
-    if (command.stats) outputs.push_back({"--stats", *command.stats});
-    check_distinct_files({{"INPUT", command.input}}, outputs);
+    check_files(command);
     const SamplingOptions& sampling = command.options.sampling;
     if (sampling.h_min > sampling.h_max)
         throw UsageError("--h-min " + printed(sampling.h_min) + " is larger than --h-max " + printed(sampling.h_max));
@@ -105,6 +103,14 @@ Lengths are shares of the longest side of the model's bounding box, areas shares
 Exit code: 0 done, 1 input or system failed, 2 wrong usage. A failed or killed bake leaves no output behind.)";
 
 }  // namespace
+
+void check_files(const BakeCommand& command, const std::vector<fs::path>& companions) {
+    std::vector<NamedFile> inputs = {{"INPUT", command.input}}, outputs = {{"--output", command.output}};
+    for (const fs::path& companion : companions)
+        inputs.push_back({"INPUT's material or texture", companion});
+    if (command.stats) outputs.push_back({"--stats", *command.stats});
+    check_distinct_files(inputs, outputs);
+}
 
 std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv) {
     static const std::map<std::string, Selection> selections = {{"geometric", Selection::kGeometric},

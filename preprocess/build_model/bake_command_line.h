@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace splice {
 
@@ -14,6 +15,10 @@ struct BakeCommand {
     bool quiet = false;
     BakeOptions options;
 };
+
+/// Throws UsageError when an output is the input, one of `companions` (materials and textures that the input names,
+/// known once it is read) or the other output.
+void check_files(const BakeCommand& command, const std::vector<std::filesystem::path>& companions = {});
 
 /// Nothing when --help or --version was asked for and printed. Throws UsageError.
 std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv);

@@ -126,6 +126,7 @@ Model bake_file(const std::filesystem::path& path, const BakeOptions& options, B
         return build_cloud_model(std::move(cloud), options, stats, progress);
     }
     stats.warnings = source.warnings;
+    stats.companions = source.companions;
     IndexedMesh mesh = timed(progress, "repair", stats.seconds_repair, [&] {
         return repair_mesh(std::move(source), options.repair, stats.repair, path.string());
     });

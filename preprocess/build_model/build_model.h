@@ -36,7 +36,8 @@ struct BakeStats {
     ClusterStats cluster;
     SurfelStats surfel;
     std::vector<std::string> warnings;
-    std::uint64_t vertices = 0, triangles = 0;  // of the repaired mesh
+    std::vector<std::filesystem::path> companions;  // files that were read because the input names them
+    std::uint64_t vertices = 0, triangles = 0;      // of the repaired mesh
     double seconds_read = 0, seconds_repair = 0, seconds_cluster = 0, seconds_simplify = 0, seconds_sample = 0,
            seconds_prune = 0, seconds_assemble = 0, seconds_total = 0;
 };

@@ -1,5 +1,6 @@
 #include "preprocess/build_model/model_report.h"
 
+#include "preprocess/build_model/counted.h"
 #include "preprocess/model_format/section_layout.h"
 
 #include <nlohmann/json.hpp>
@@ -87,14 +88,15 @@ std::string model_report_text(const ModelFile& file, const std::string& name) {
     const format::ModelInfo& info = *view.info;
     const Totals totals(view);
     std::ostringstream text;
-    text << name << ": model of format version " << format::kVersion << ", " << file.bytes().size()
-         << " bytes, intact\n";
+    text << name << ": model of format version " << format::kVersion << ", " << counted(file.bytes().size(), "byte")
+         << ", intact\n";
     const bool cloud = (info.flags & format::kPointCloud) != 0;
     text << "source      ";
     if (cloud) {
-        text << info.source_vertices << " points";
+        text << counted(info.source_vertices, "point");
     } else {
-        text << info.source_triangles << " triangles, " << info.source_vertices << " vertices";
+        text << counted(info.source_triangles, "triangle") << ", "
+             << counted(info.source_vertices, "vertex", "vertices");
     }
     text << ", longest side " << info.source_scale << '\n';
     text << "surface     "
@@ -105,17 +107,18 @@ std::string model_report_text(const ModelFile& file, const std::string& name) {
              : cloud                                 ? ", colours"
                                                      : ", vertex colours")
          << ((info.flags & format::kHasUvs) != 0 ? ", texture coordinates" : "") << '\n';
-    text << "drawn       " << info.drawn_triangles << " triangles in " << totals.triangle_patches << " patches, "
-         << view.surfel_count() << " surfels in " << totals.surfel_patches << " patches\n";
+    const auto patches = [](std::uint64_t number) { return counted(number, "patch", "patches"); };
+    text << "drawn       " << counted(info.drawn_triangles, "triangle") << " in " << patches(totals.triangle_patches)
+         << ", " << counted(view.surfel_count(), "surfel") << " in " << patches(totals.surfel_patches) << '\n';
     if (view.surfel_count() != 0)
         text << "radius      median " << info.median_surfel_radius << ", largest " << info.max_surfel_radius
              << " of the longest side\n";
     for (std::size_t i = 0; i < totals.levels.size(); ++i)
-        text << "level " << std::left << std::setw(6) << i << totals.levels[i].triangles << " triangles in "
-             << totals.levels[i].patches << " patches, error at most " << totals.levels[i].max_error << '\n';
+        text << "level " << std::left << std::setw(6) << i << counted(totals.levels[i].triangles, "triangle") << " in "
+             << patches(totals.levels[i].patches) << ", error at most " << totals.levels[i].max_error << '\n';
     for (const format::Texture& texture : view.textures)
         text << "texture     " << texture.width << " x " << texture.height << ", " << texture.mip_levels
-             << " mip levels\n";
+             << (texture.mip_levels == 1 ? " mip level\n" : " mip levels\n");
     text << "\nsection           elements  bytes each        bytes\n";
     format::for_each_section(
         view, [&]<typename T>(format::SectionKind, const char* title, std::span<const T> elements) {

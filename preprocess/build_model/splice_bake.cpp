@@ -41,6 +41,7 @@ int bake(const BakeCommand& command) {
         StageDisplay display(command.quiet);
         const auto progress = [&](std::string_view stage, double fraction) { display.update(stage, fraction); };
         const Model model = bake_file(command.input, command.options, stats, progress);
+        check_files(command, stats.companions);
         display.update("write", 0);
         result = write(model, command.output);
         display.finish();

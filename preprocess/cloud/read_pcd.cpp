@@ -109,7 +109,8 @@ class PcdParser {
     PointCloud compressed() {
         std::string_view stream = bytes_.substr(header_.data_begin);
         std::uint32_t sizes[2];
-        if (stream.size() < sizeof sizes) throw InputError(name_, "", "file ends before the compressed data");
+        if (stream.size() < sizeof sizes)
+            throw InputError(name_, "byte " + std::to_string(bytes_.size()), "file ends before the compressed data");
         std::memcpy(sizes, stream.data(), sizeof sizes);
         stream.remove_prefix(sizeof sizes);
         if (sizes[0] > stream.size())

@@ -12,9 +12,9 @@ namespace {
 
 using RoleColumns = std::array<ScalarColumn, kRoles>;
 
-PointColumns columns_of(const RoleColumns& roles, std::size_t records, const std::string& name) {
+PointColumns columns_of(const RoleColumns& roles, const PlyElement& element, const std::string& name) {
     PointColumns columns;
-    columns.records = records;
+    columns.records = element.count;
     const auto take = [&](PlyRole first, ScalarColumn(&into)[3]) {
         const auto* begin = roles.begin() + first;
         if (std::all_of(begin, begin + 3, [](const ScalarColumn& column) { return bool(column); }))
@@ -23,7 +23,7 @@ PointColumns columns_of(const RoleColumns& roles, std::size_t records, const std
     take(kX, columns.position);
     take(kNormalX, columns.normal);
     take(kRed, columns.colour);
-    if (!columns.position[0]) throw InputError(name, "", "the vertices have no properties x, y and z");
+    if (!columns.position[0]) throw InputError(name, element.where(), "the vertices have no properties x, y and z");
     return columns;
 }
 
@@ -67,7 +67,7 @@ PointCloud read_in_place(std::string_view bytes, const PlyHeader& header, std::s
                            0};
         at += size_of(property.type);
     }
-    return gather_points(columns_of(roles, element.count, name));
+    return gather_points(columns_of(roles, element, name));
 }
 
 // Anything else goes through a table of numbers.
@@ -115,7 +115,7 @@ PointCloud read_row_by_row(Rows rows, const PlyHeader& header, std::size_t verte
     RoleColumns roles;
     for (std::size_t role = 0; role < kRoles; ++role)
         if (place[role] != 0) roles[role] = table_column(table, width, place[role] - 1, scale[role]);
-    return gather_points(columns_of(roles, element.count, name));
+    return gather_points(columns_of(roles, element, name));
 }
 
 }  // namespace

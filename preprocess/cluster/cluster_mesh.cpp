@@ -219,29 +219,15 @@ PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, co
         const auto merged = static_cast<double>(clusters.graph.tree().size());
         if (progress) progress("cluster", merged / static_cast<double>(surface.faces.size()));
     };
-    Stopwatch watch;
-    double seconds_contraction = 0;
-    const auto contract_clusters = [&] {
-        Stopwatch contraction;
-        run_phase_one(mesh, surface, clusters, tick);
-        if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
-        if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
-        seconds_contraction = contraction.lap();
-    };
-    // Contraction is one chain of dependent merges; another thread measures meanwhile what its outcome is judged by.
-    std::vector<JudgedPlace> places;
-    tbb::parallel_invoke(
-        [&] {
-            if (settings.hybrid) places = judge_places(mesh, surface.faces);
-        },
-        contract_clusters);
+    run_phase_one(mesh, surface, clusters, tick);
+    if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
+    if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
     if (progress) progress("cluster", 1.0);
-    const double seconds_waited = std::max(0.0, watch.lap() - seconds_contraction);
-
     PatchSet set = assemble_patches(mesh, surface.faces, clusters.graph, clusters.surfel);
-    watch.lap();
-    set.stats.selection_auc = selection_auc(places, set);
-    set.stats.seconds_judge = seconds_waited + watch.lap();
+
+    Stopwatch watch;
+    if (settings.hybrid) set.stats.selection_auc = selection_auc(judge_places(mesh, surface.faces), set);
+    set.stats.seconds_judge = watch.lap();
     return set;
 }
 

@@ -6,6 +6,7 @@
 #include "preprocess/model_format/model_format.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace splice {
@@ -22,9 +23,10 @@ struct ClusterPatch {
 struct ClusterStats {
     std::uint64_t triangle_patches = 0, surfel_patches = 0;
     std::uint64_t triangles_in_triangle_patches = 0;
-    double selection_auc = 0;  // ALGORITHMS section 1: P(point of a surfel patch is rougher than one of a triangle
-                               // patch); 0.5 when one kind is missing
-    double seconds_judge = 0;  // what measuring selection_auc added: the rest of it runs beside the contraction
+    // P(point of a surfel patch is rougher than one of a triangle patch), see selection_auc.h; none when one kind is
+    // missing.
+    std::optional<double> selection_auc;
+    double seconds_judge = 0;  // what measuring selection_auc took
 };
 
 struct PatchSet {

@@ -128,7 +128,7 @@ std::vector<JudgedPlace> judge_places(const IndexedMesh& mesh, const FaceGraph& 
     return places;
 }
 
-double selection_auc(const std::vector<JudgedPlace>& places, const PatchSet& patches) {
+std::optional<double> selection_auc(const std::vector<JudgedPlace>& places, const PatchSet& patches) {
     // The area under the receiver operating characteristic, by the rank sum.
     const auto is_surfel = [&](const JudgedPlace& place) {
         const ClusterPatch& patch = patches.patches[patches.triangle_patch[place.face]];
@@ -145,7 +145,8 @@ double selection_auc(const std::vector<JudgedPlace>& places, const PatchSet& pat
         surfels += tied_surfels;
         first = last;
     }
-    return triangles_below * surfels > 0 ? won / (triangles_below * surfels) : 0.5;
+    const double pairs = triangles_below * surfels;
+    return pairs > 0 ? std::optional(won / pairs) : std::nullopt;
 }
 
 }  // namespace splice

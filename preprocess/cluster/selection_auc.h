@@ -5,6 +5,7 @@
 #include "preprocess/cluster/patch_set.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace splice {
@@ -20,7 +21,7 @@ struct JudgedPlace {
 std::vector<JudgedPlace> judge_places(const IndexedMesh& mesh, const FaceGraph& faces);
 
 /// The probability that a random point of a surfel patch is rougher than a random point of a triangle patch (area
-/// uniform, ties count half): 1 a perfect choice, 0.5 a choice by lot, or one kind is missing.
-double selection_auc(const std::vector<JudgedPlace>& places, const PatchSet& patches);
+/// uniform, ties count half): 1 a perfect choice, 0.5 a choice by lot. Nothing where one kind is missing.
+std::optional<double> selection_auc(const std::vector<JudgedPlace>& places, const PatchSet& patches);
 
 }  // namespace splice

@@ -43,7 +43,10 @@ bool CompanionFiles::contains(const std::string& name) const {
 std::optional<std::string> CompanionFiles::read(const std::string& name, std::string& problem) const {
     const auto file = find(name, problem);
     try {
-        if (file) return read_file_bytes(*file);
+        if (file) {
+            files_read_.push_back(*file);
+            return read_file_bytes(*file);
+        }
     } catch (const Error& e) {
         problem = e.what();
     }

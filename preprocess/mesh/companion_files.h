@@ -25,12 +25,16 @@ class CompanionFiles {
     /// `problem`.
     std::optional<std::string> read(const std::string& name, std::string& problem) const;
 
+    /// Those that read() found, as often as they were read: a bake must not overwrite them.
+    const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
+
     /// An image in PNG, JPEG, BMP, TGA or PPM; nothing and the reason when it is absent or unreadable.
     std::optional<Image> read_image(const std::string& name, std::string& problem) const;
 
   private:
     std::optional<std::filesystem::path> find(const std::string& name, std::string& problem) const;
     std::optional<std::filesystem::path> folder_;
+    mutable std::vector<std::filesystem::path> files_read_;  // a record, no part of what is found
 };
 
 /// Decodes PNG, JPEG, BMP, TGA or PPM. On failure: nothing, and the reason in `problem`.

@@ -72,7 +72,7 @@ std::string gunzip(std::string_view bytes, const std::string& name) {
     for (;;) {
         if (produced == out.size()) {
             if (produced >= limit) {
-                throw InputError(name, "",
+                throw InputError(name, "byte " + std::to_string(consumed),
                                  "gzip stream expands to more than " + std::to_string(limit) +
                                      " bytes, more than a mesh of this size can hold");
             }

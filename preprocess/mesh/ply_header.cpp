@@ -92,6 +92,7 @@ class HeaderParser {
         if (element.name.empty() || error != std::errc() || stop != count.data() + count.size()) {
             fail("expected \"element NAME COUNT\" with a count of at least 0");
         }
+        element.line = line_;
         header_.elements.push_back(std::move(element));
     }
 
@@ -126,7 +127,7 @@ class HeaderParser {
             const std::size_t row = smallest_row(element, header_.encoding);
             // The last ascii row needs no line end.
             if (row > 0 && element.count > (available + 1) / row) {
-                throw InputError(name_, "",
+                throw InputError(name_, element.where(),
                                  "header promises " + std::to_string(element.count) + " rows of \"" +
                                      printable(element.name) + "\", but only " + std::to_string(available) +
                                      " bytes follow");

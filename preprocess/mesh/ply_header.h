@@ -25,6 +25,9 @@ struct PlyElement {
     std::string name;
     std::uint64_t count = 0;  // as the header says; at most one a byte of the file unless it has no properties
     std::vector<PlyProperty> properties;
+    std::size_t line = 0;  // of the header, counted from 1
+
+    std::string where() const { return "line " + std::to_string(line); }
 };
 
 struct PlyHeader {

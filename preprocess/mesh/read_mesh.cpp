@@ -31,6 +31,7 @@ SourceMesh parse_mesh_file(const SourceFile& file) {
             mesh = parse_smf(bytes, name, companions);
             break;
     }
+    mesh.companions = companions.files_read();
     if (mesh.polygon_begin.size() == 1) {
         throw InputError(name, "",
                          mesh.positions.empty() ? "no faces and no vertices, expected a mesh"

@@ -23,7 +23,8 @@ struct SourceMesh {
     std::vector<std::uint32_t> polygon_material;  // empty or one a polygon
     std::vector<MeshMaterial> materials;
     std::vector<Image> images;
-    std::vector<std::string> warnings;  // e.g. "material file x.mtl not found, using white"
+    std::vector<std::string> warnings;              // e.g. "material file x.mtl not found, using white"
+    std::vector<std::filesystem::path> companions;  // files that it names and that were read: materials, textures
 };
 
 /// What the file and the repaired mesh look like, and everything repair changed. All are counts.

@@ -59,6 +59,10 @@ class OffText {
     [[noreturn]] void fail(const std::string& problem) const {
         throw InputError(name_, text_.where(), text_.at_end() ? "file ends, " + problem : problem);
     }
+    /// What began at `start` is at fault, however far it was read since.
+    [[noreturn]] void fail_at(const TextScanner& start, const std::string& problem) const {
+        throw InputError(name_, start.where(), problem);
+    }
 
   private:
     TextScanner text_;
@@ -163,12 +167,21 @@ SourceMesh parse_off(std::string_view bytes, const std::string& name) {
     std::vector<std::uint32_t> face_colours;
     bool any_face_colour = false;
     for (std::size_t f = 0; f < header.faces; ++f) {
+        text.skip_to_data();
+        const TextScanner start = text.raw();
         const double corners = text.number("the number of corners of a face");
-        if (!(corners >= 0) || corners > static_cast<double>(text.raw().rest().size())) {
-            text.fail("impossible number of corners");
-        }
-        for (auto left = static_cast<std::size_t>(corners); left > 0; --left)
+        // Every corner takes at least a blank and a digit.
+        const std::size_t left = text.raw().rest().size();
+        if (!(corners >= 0) || corners != std::floor(corners) || corners > static_cast<double>(left) / 2)
+            text.fail_at(start, "impossible number of corners " + printable(start.rest_of_line()));
+        for (auto corner = static_cast<std::size_t>(corners); corner > 0; --corner) {
+            text.skip_to_data();
+            if (text.raw().at_end())
+                text.fail_at(start, "a face of " + std::to_string(static_cast<std::size_t>(corners)) +
+                                        " corners, but the file ends after " +
+                                        std::to_string(static_cast<std::size_t>(corners) - corner));
             mesh.corner_position.push_back(to_index(text.number("a vertex index")));
+        }
         mesh.polygon_begin.push_back(mesh.corner_position.size());
         std::array<double, 4> colour{};
         const std::size_t components = text.numbers_to_line_end(colour);

@@ -85,7 +85,7 @@ class PlyParser {
             const bool is_vertex = element.name == "vertex";
             const bool is_face = element.name == "face" || element.name == "tristrips";
             if (is_vertex && !(has[kX] && has[kY] && has[kZ])) {
-                throw InputError(name_, "", "the vertices have no properties x, y and z");
+                throw InputError(name_, element.where(), "the vertices have no properties x, y and z");
             }
             for (std::uint64_t row = 0; row < element.count; ++row) {
                 values_.fill(0);

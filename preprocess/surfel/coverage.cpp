@@ -105,10 +105,10 @@ bool disk_covers(const SurfelSample& surfel, const Vec3f& point, const Vec3f& fa
            surfel.normal.dot(face_normal) >= 0.5f;
 }
 
-Coverage measure_coverage(const IndexedMesh& mesh, const PatchSet& patches, const SurfelSet& surfels, std::size_t count,
-                          std::uint64_t seed) {
+std::optional<Coverage> measure_coverage(const IndexedMesh& mesh, const PatchSet& patches, const SurfelSet& surfels,
+                                         std::size_t count, std::uint64_t seed) {
     const std::vector<TestPoint> points = random_points(mesh, patches, count, seed);
-    if (points.empty()) return {};
+    if (points.empty()) return std::nullopt;
     std::vector<std::uint32_t> row_begin(static_cast<std::size_t>(kGrid) * kGrid + 1,
                                          0);  // first point of each row of cells
     for (const auto& point : points)
@@ -141,7 +141,7 @@ Coverage measure_coverage(const IndexedMesh& mesh, const PatchSet& patches, cons
     });
     const auto bare = std::count_if(covered.begin(), covered.end(), [](const auto& c) { return c.load() == 0; });
     const auto n = static_cast<double>(points.size());
-    return {static_cast<double>(disks.load()) / n, static_cast<double>(bare) / n};
+    return Coverage{static_cast<double>(disks.load()) / n, static_cast<double>(bare) / n};
 }
 
 }  // namespace splice

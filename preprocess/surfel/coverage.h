@@ -4,6 +4,7 @@
 #include "preprocess/surfel/surfel_set.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace splice {
 
@@ -16,8 +17,8 @@ struct Coverage {
     double uncovered = 0;  // share of the points under no disk of their own patch
 };
 
-/// `points` area-uniform random points of the surfel patches; deterministic in `seed`.
-Coverage measure_coverage(const IndexedMesh& mesh, const PatchSet& patches, const SurfelSet& surfels,
-                          std::size_t points, std::uint64_t seed);
+/// `points` area-uniform random points of the surfel patches, none without such patches; deterministic in `seed`.
+std::optional<Coverage> measure_coverage(const IndexedMesh& mesh, const PatchSet& patches, const SurfelSet& surfels,
+                                         std::size_t points, std::uint64_t seed);
 
 }  // namespace splice

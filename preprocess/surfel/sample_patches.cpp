@@ -199,9 +199,10 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
     const double elapsed = seconds_since(start);
     set.stats.seconds_prune = seconds > 0 ? elapsed * seconds_prune / seconds : 0;
     set.stats.seconds_sample = elapsed - set.stats.seconds_prune;
-    const Coverage coverage = measure_coverage(mesh, patches, set, kTestPoints, kTestSeed);
-    set.stats.coverage_mean = coverage.mean;
-    set.stats.uncovered = coverage.uncovered;
+    if (const auto coverage = measure_coverage(mesh, patches, set, kTestPoints, kTestSeed)) {
+        set.stats.coverage_mean = coverage->mean;
+        set.stats.uncovered = coverage->uncovered;
+    }
     if (progress) progress("sample", 1.0);
     return set;
 }

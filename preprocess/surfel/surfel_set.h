@@ -24,8 +24,9 @@ struct SurfelSample {
 struct SurfelStats {
     std::uint64_t candidates = 0;  // before pruning
     std::uint64_t surfels = 0;
-    double coverage_mean = 0;  // mean number of disks over area-uniform random points of the surfel patches
-    double uncovered = 0;      // share of those points under no disk (0 by construction)
+    // Over area-uniform random points of the surfel patches, if there are any:
+    std::optional<double> coverage_mean;  // mean number of disks over a point
+    double uncovered = 0;                 // share of the points under no disk (0 by construction)
     double seconds_sample = 0, seconds_prune = 0;
 };
 

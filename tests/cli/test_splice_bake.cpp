@@ -126,6 +126,21 @@ TEST_CASE("splice-bake --stats writes every promised figure, and they agree with
     CHECK(json.at("peak_rss_bytes") > 1'000'000);
 }
 
+TEST_CASE(
+    "splice-bake --stats has null for what cannot be measured: a choice without two kinds, disks without surfels") {
+    const TemporaryFolder folder;
+    test::write_cube(folder / "cube.obj");
+    const auto stats_with = [&](const std::string& representation) {
+        REQUIRE(bake(folder, {"cube.obj", "--stats", "stats.json", "--representation", representation}).exit_code == 0);
+        return nlohmann::json::parse(read_text(folder / "stats.json"));
+    };
+    const auto triangles = stats_with("triangles"), surfels = stats_with("surfels");
+    CHECK(triangles.at("selection").at("auc").is_null());
+    CHECK(triangles.at("output").at("coverage_mean").is_null());
+    CHECK(surfels.at("selection").at("auc").is_null());
+    CHECK(surfels.at("output").at("coverage_mean") >= 1.0);
+}
+
 TEST_CASE("splice-bake prints stage lines into a file and a progress bar onto a terminal") {
     const TemporaryFolder folder;
     test::write_bumpy_torus(folder / "torus.off", 40);
@@ -155,7 +170,7 @@ TEST_CASE("splice-bake tells what repair did, and only that") {
     std::ofstream(folder / "awkward.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\nf 1 2 3\nf 1 1 2\n";
     const Outcome outcome = bake(folder, {"awkward.obj"});
     CHECK(outcome.exit_code == 0);
-    CHECK_THAT(outcome.out, Contains("1 isolated vertices dropped") && Contains("1 duplicate triangles dropped"));
+    CHECK_THAT(outcome.out, Contains("1 isolated vertex dropped") && Contains("1 duplicate triangle dropped"));
     CHECK_THAT(outcome.out, !Contains("vertices welded"));
 }
 
@@ -289,6 +304,33 @@ TEST_CASE("splice-bake never writes over its input or its other output, however 
     }
 }
 
+TEST_CASE("splice-bake never writes over a material or a texture that its input names") {
+    const TemporaryFolder folder;
+    const auto write = [&](const std::string& name, const std::string& text) {
+        std::ofstream(folder / name, std::ios::binary) << text;
+    };
+    write("quad.obj",
+          "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl paint\nf 1/1 2/2 3/3\n");
+    write("quad.mtl", "newmtl paint\nmap_Kd paint.ppm\n");
+    write("paint.ppm", "P6\n1 1\n255\nabc");
+    std::filesystem::create_symlink("paint.ppm", folder / "link");
+    const std::vector<std::string> names = names_in(folder.path());
+    const std::string material = read_text(folder / "quad.mtl"), texture = read_text(folder / "paint.ppm");
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+             {"-o", "paint.ppm"}, {"-o", "./quad.mtl"}, {"-o", "link"}, {"-o", "x.splice", "--stats", "paint.ppm"}}) {
+        std::vector<std::string> arguments = {"quad.obj", "--quiet"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Outcome outcome = bake(folder, arguments);
+        INFO(options.back() << ": " << outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK(line_count(outcome.err) == 1);
+        CHECK_THAT(outcome.err, Contains("would overwrite INPUT's material or texture"));
+        CHECK(read_text(folder / "quad.mtl") == material);
+        CHECK(read_text(folder / "paint.ppm") == texture);
+        CHECK(names_in(folder.path()) == names);
+    }
+}
+
 TEST_CASE("splice-bake accepts the limits of its options") {
     const TemporaryFolder folder;
     test::write_cube(folder / "cube.obj");
@@ -365,8 +407,8 @@ TEST_CASE("splice-bake makes a model of a point cloud and says what it dropped")
     file.close();
     const Outcome outcome = bake(folder, {"scan.xyz", "--neighbours", "12", "--stats", "scan.json"});
     CHECK(outcome.exit_code == 0);
-    CHECK_THAT(outcome.out, Contains("402 points") && Contains("1 points that are not finite dropped") &&
-                                Contains("1 duplicate points dropped") && Contains("400 surfels"));
+    CHECK_THAT(outcome.out, Contains("402 points") && Contains("1 point that is not finite dropped") &&
+                                Contains("1 duplicate point dropped") && Contains("400 surfels"));
     const auto stats = nlohmann::json::parse(read_text(folder / "scan.json"));
     CHECK(stats["input"]["points"] == 402);
     CHECK(stats["cloud"]["nonfinite_points"] == 1);

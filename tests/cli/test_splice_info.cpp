@@ -35,7 +35,7 @@ TEST_CASE("splice-info prints every section") {
     for (const char* section : {"model info", "vertices", "indices", "surfels", "patches", "levels of detail", "octree",
                                 "merge tree", "materials", "textures", "texels"})
         CHECK_THAT(outcome.out, Contains(section));
-    CHECK_THAT(outcome.out, Contains("2304 triangles") && Contains("closed"));
+    CHECK_THAT(outcome.out, Contains("2,304 triangles") && Contains("closed"));
 }
 
 TEST_CASE("splice-info --json agrees with the model") {

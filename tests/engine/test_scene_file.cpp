@@ -31,10 +31,13 @@ std::string with(const std::string& members) {
 TEST_CASE("a scene is complained about with the path of the offending value") {
     const std::string big(200, 'x');
     const std::vector<std::pair<std::string, std::string>> table{
-        {"", "scene.json: line 1: not valid JSON"},
-        {"{\n\"models\": [\n}", "scene.json: line 3: not valid JSON"},
-        {R"({"models": [{"file": "a", "transform": {"scale": 1e999}}]})",
-         "scene.json: not valid JSON: a number is out of range"},
+        {"", "scene.json: line 1, column 1: not valid JSON: unexpected end of input; expected '[', '{', or a literal"},
+        {"{\n\"models\": [\n  }",
+         "scene.json: line 3, column 3: not valid JSON: unexpected '}'; expected '[', '{', or a literal"},
+        {"{\"a - b\": tru}",
+         "scene.json: line 1, column 14: not valid JSON: invalid literal; last read: '\"a - b\": tru}'"},
+        {"{\"models\":\n [{\"file\": \"a\", \"transform\": {\"scale\": 1e999}}]}",
+         "scene.json: line 2, column 40: not valid JSON: the number 1e999 is out of range"},
         {"[]", "scene.json: /: expected an object, got an array of 0"},
         {"{}", "scene.json: /: member \"models\" is missing"},
         {R"({"models": []})", "scene.json: /models: expected an array of 1 or more, got an array of 0"},

@@ -418,7 +418,7 @@ TEST_CASE("input that cannot be used is one line and exit code 1, and leaves no 
         {{"folder", "-o", "b.png"}, "folder"},
         {{"cut.splice", "-o", "b.png"}, "cut.splice"},
         {{"flipped.splice", "-o", "b.png"}, "flipped.splice"},
-        {{"empty.json", "-o", "b.png"}, "empty.json: line 1: not valid JSON"},
+        {{"empty.json", "-o", "b.png"}, "empty.json: line 1, column 1: not valid JSON"},
         {{"wrong.json", "-o", "b.png"},
          "wrong.json: /models/0/transform/scale: expected a positive number from 1e-30 to 1e30, got -1"},
         {{"missing.json", "-o", "b.png"}, "missing.json: /models/0/file: cannot read gone.splice: No such file"},
@@ -444,6 +444,28 @@ TEST_CASE("input that cannot be used is one line and exit code 1, and leaves no 
         CHECK(outcome.err.find("splice-capture: ") == 0);
         CHECK(outcome.err.find(expected) != std::string::npos);
         CHECK(files_in(folder.path()) == before);
+    }
+}
+
+TEST_CASE("an output is never written over a texture that a mesh names") {
+    const TemporaryFolder folder;
+    write_text(folder / "quad.obj",
+               "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl paint\nf 1/1 2/2 3/3\n");
+    write_text(folder / "quad.mtl", "newmtl paint\nmap_Kd paint.png\n");
+    write_text(folder / "paint.png", "P6\n1 1\n255\nabc");
+    write_text(folder / "scene.json", R"({"models": [{"file": "quad.obj"}]})");
+    const std::vector<std::string> before = files_in(folder.path());
+    const std::string texture = read_text(folder / "paint.png");
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"quad.obj", "-o", "paint.png"},
+                                               {"scene.json", "-o", "./paint.png"},
+                                               {"quad.obj", "-o", "z.png", "--stats", "quad.mtl"}}) {
+        const Outcome outcome = capture(folder, arguments);
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK(outcome.err.find("would overwrite a mesh's material or texture") != std::string::npos);
+        CHECK(files_in(folder.path()) == before);
+        CHECK(read_text(folder / "paint.png") == texture);
     }
 }
 

@@ -67,7 +67,11 @@ TEST_CASE("OFF errors name the line and what was expected") {
     CHECK_THAT(message("OFF\n3 2 0\n" + kTriangle), Catch::Contains("file ends"));
     CHECK_THAT(message("OFF\n3 1 0\n0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n"), Catch::Contains("line 4"));
     CHECK_THAT(message("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n"),
-               Catch::Contains("impossible number of corners"));
+               Catch::Contains("line 6") && Catch::Contains("impossible number of corners"));
+    CHECK_THAT(message("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2.5 0 1 2\n"),
+               Catch::Contains("line 6") && Catch::Contains("impossible number of corners"));
+    CHECK_THAT(message("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n7 0 1 2\n3 0 1\n\n\n"),
+               Catch::Contains("line 6") && Catch::Contains("7 corners, but the file ends after 6"));
     CHECK_THAT(message("OFF BINARY\n"), Catch::Contains("binary OFF"));
     CHECK_THAT(message("nOFF\n5\n3 1 0\n"), Catch::Contains("three-dimensional"));
 }

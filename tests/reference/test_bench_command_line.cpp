@@ -207,6 +207,34 @@ TEST_CASE("splice-bench quality cannot know what a baked model was made from") {
     CHECK(outcome.err.find("expected a mesh") != std::string::npos);
 }
 
+TEST_CASE("splice-bench never writes over what it reads") {
+    const test::TemporaryFolder folder;
+    const std::string mesh = (folder / "a.off").string(), scene = (folder / "scene.json").string(),
+                      report = (folder / "old.json").string();
+    const std::string triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n",
+                      models = R"({"models": [{"file": "a.off"}]})";
+    std::ofstream(mesh) << triangle;
+    std::ofstream(scene) << models;
+    std::ofstream(report) << "{}";
+    for (const std::string& arguments :
+         {"bake '" + mesh + "' --json '" + mesh + "'", "capture '" + mesh + "' --json '" + mesh + "'",
+          "holes '" + mesh + "' --json '" + mesh + "'", "quality '" + mesh + "' --json '" + mesh + "'",
+          "quality '" + scene + "' --json '" + mesh + "'", "frame '" + scene + "' --json '" + mesh + "'",
+          "frame '" + scene + "' --html '" + scene + "'", "costs '" + scene + "' --json '" + scene + "'",
+          "confetti '" + mesh + "' --json '" + mesh + "'",
+          "graph --no-device --vs '" + report + "' --json '" + report + "'",
+          "graph --no-device --json '" + report + ".new' --html '" + report + ".new'"}) {
+        INFO(arguments);
+        const Outcome outcome = bench(arguments);
+        CHECK(outcome.exit_code == 2);
+        CHECK(one_line(outcome.err));
+        CHECK(outcome.err.find("would overwrite") != std::string::npos);
+        CHECK(contents(mesh) == triangle);
+        CHECK(contents(scene) == models);
+        CHECK(contents(report) == "{}");
+    }
+}
+
 TEST_CASE("splice-bench reports a mesh that cannot be baked as a failure") {
     const test::TemporaryFolder folder;
     std::ofstream(folder / "empty.obj") << "# nothing\n";

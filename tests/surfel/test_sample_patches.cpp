@@ -75,7 +75,7 @@ TEST_CASE("models without surfel patches get no surfels", "[surfel]") {
     const SurfelSet set = sample_patches(mesh, patches, {});
     CHECK(set.surfels.empty());
     CHECK(set.patch_begin == std::vector<std::uint64_t>{0, 0});
-    CHECK(set.stats.coverage_mean == 0);
+    CHECK(!set.stats.coverage_mean);
     CHECK(set.stats.uncovered == 0);
 }
 

@@ -1,6 +1,7 @@
 #include "engine/bench/frame/frame_command.h"
 
 #include "engine/bench/report/changes.h"
+#include "engine/bench/report_files.h"
 #include "engine/capture/picture_size.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
@@ -62,8 +63,9 @@ CLI::App& add_frame_command(CLI::App& program, FrameCommand& command) {
 }
 
 void run_frame_command(FrameCommand& command) {
-    for (const auto& path : {command.json, command.html})
-        if (!path.empty()) check_output_path(path);
+    std::vector<NamedFile> inputs = files_of_scenes("FILE", command.options.files);
+    inputs.push_back({"--vs", command.versus});
+    check_report_files(inputs, {{"--json", command.json}, {"--html", command.html}});
     FrameBenchOptions& options = command.options;
     options.sizes.clear();
     for (const std::string& size : command.sizes)

@@ -6,6 +6,7 @@
 #include "engine/bench/graph/report_html.h"
 #include "engine/bench/graph/report_json.h"
 #include "engine/bench/graph/report_text.h"
+#include "engine/bench/report_files.h"
 #include "preprocess/model_format/atomic_file.h"
 
 #include <CLI/CLI.hpp>
@@ -59,9 +60,7 @@ CLI::App& add_graph_command(CLI::App& program, GraphCommand& command) {
 }
 
 void run_graph_command(GraphCommand& command) {
-    for (const auto& path : {command.json, command.html}) {
-        if (!path.empty()) check_output_path(path);
-    }
+    check_report_files({{"--vs", command.versus}}, {{"--json", command.json}, {"--html", command.html}});
     std::optional<nlohmann::json> before;
     if (!command.versus.empty()) before = read_report(command.versus);
     command.options.device = gpu::parse_device_choice(command.device);

@@ -13,6 +13,7 @@ struct BakeCommand {
     std::filesystem::path input, output;
     std::optional<std::filesystem::path> stats;
     bool quiet = false;
+    bool compress = false;
     BakeOptions options;
 };
 

@@ -47,7 +47,8 @@ std::string model_report_json(const ModelFile& file, const std::string& name) {
     const Totals totals(view);
     nlohmann::ordered_json json;
     json["file"] = name;
-    json["version"] = format::kVersion;
+    json["version"] = file.is_compressed() ? format::kCompressedVersion : format::kVersion;
+    json["compressed"] = file.is_compressed();
     json["file_bytes"] = file.bytes().size();
     json["source"] = {{"vertices", info.source_vertices},
                       {"triangles", info.source_triangles},
@@ -88,8 +89,13 @@ std::string model_report_text(const ModelFile& file, const std::string& name) {
     const format::ModelInfo& info = *view.info;
     const Totals totals(view);
     std::ostringstream text;
-    text << name << ": model of format version " << format::kVersion << ", " << counted(file.bytes().size(), "byte")
-         << ", intact\n";
+    text << name << ": ";
+    if (file.is_compressed()) {
+        text << "compressed model of format version " << format::kCompressedVersion;
+    } else {
+        text << "model of format version " << format::kVersion;
+    }
+    text << ", " << counted(file.bytes().size(), "byte") << ", intact\n";
     const bool cloud = (info.flags & format::kPointCloud) != 0;
     text << "source      ";
     if (cloud) {

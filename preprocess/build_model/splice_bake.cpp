@@ -20,10 +20,10 @@ std::uint64_t peak_rss_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-BakeResult write(const Model& model, const std::filesystem::path& path) {
+BakeResult write(const Model& model, const std::filesystem::path& path, bool compress) {
     BakeResult result;
     const auto start = std::chrono::steady_clock::now();
-    result.file_bytes = write_model(view_of(model), path);
+    result.file_bytes = compress ? write_compressed_model(view_of(model), path) : write_model(view_of(model), path);
     result.seconds_write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     result.drawn_triangles = model.info.drawn_triangles;
     result.surfels = view_of(model).surfel_count();
@@ -43,7 +43,7 @@ int bake(const BakeCommand& command) {
         const Model model = bake_file(command.input, command.options, stats, progress);
         check_files(command, stats.companions);
         display.update("write", 0);
-        result = write(model, command.output);
+        result = write(model, command.output, command.compress);
         display.finish();
     }
     if (command.stats) write_text_file(*command.stats, stats_json(stats, result));

@@ -54,6 +54,9 @@ ModelView view_of(const Model& model);
 /// on failure nothing is left behind. Returns the file's size. Throws SystemError.
 std::uint64_t write_model(const ModelView& model, const std::filesystem::path& path);
 
+/// The same, compressed (compressed_model.h). Throws UsageError where this build cannot.
+std::uint64_t write_compressed_model(const ModelView& model, const std::filesystem::path& path);
+
 /// The same bytes in memory (tests, fuzzing).
 std::vector<std::byte> serialise_model(const ModelView& model);
 
@@ -71,12 +74,16 @@ class ModelFile {
     ModelFile& operator=(ModelFile&&) noexcept;
     ~ModelFile();
     const ModelView& view() const { return view_; }
+    /// As they are in the file.
     std::span<const std::byte> bytes() const { return bytes_; }
-    /// Lets go of the memory that holds a part of them, until it is read again.
+    /// The whole of it is in memory, expanded, and stays there.
+    bool is_compressed() const { return !expanded_.empty(); }
+    /// Lets go of the memory that holds a part of the view, until it is read again.
     void release(std::span<const std::byte> part) const;
 
   private:
     std::span<const std::byte> bytes_;
+    std::vector<std::byte> expanded_;
     ModelView view_;
 };
 

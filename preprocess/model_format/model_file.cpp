@@ -1,3 +1,4 @@
+#include "preprocess/model_format/compressed_model.h"
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/model.h"
 #include "preprocess/model_format/posix_open.h"
@@ -46,7 +47,8 @@ void unmap(std::span<const std::byte> bytes) {
 
 ModelFile::ModelFile(const std::filesystem::path& path) : bytes_(map_file(path)) {
     try {
-        view_ = parse_model(bytes_, path.string());
+        if (is_compressed_model(bytes_)) expanded_ = expand_model(bytes_, path.string());
+        view_ = parse_model(is_compressed() ? expanded_ : bytes_, path.string());
     } catch (...) {
         unmap(bytes_);
         throw;
@@ -54,15 +56,20 @@ ModelFile::ModelFile(const std::filesystem::path& path) : bytes_(map_file(path))
 }
 
 ModelFile::ModelFile(ModelFile&& other) noexcept
-    : bytes_(std::exchange(other.bytes_, {})), view_(std::exchange(other.view_, {})) {}
+    : bytes_(std::exchange(other.bytes_, {})),
+      expanded_(std::exchange(other.expanded_, {})),
+      view_(std::exchange(other.view_, {})) {}
 
 ModelFile& ModelFile::operator=(ModelFile&& other) noexcept {
     std::swap(bytes_, other.bytes_);
+    std::swap(expanded_, other.expanded_);
     std::swap(view_, other.view_);
     return *this;
 }
 
 void ModelFile::release(std::span<const std::byte> part) const {
+    // What is expanded cannot be read again.
+    if (is_compressed()) return;
     // Whole pages, so that nothing beside the part goes.
     const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
     const auto begin = (reinterpret_cast<std::uintptr_t>(part.data()) + page - 1) / page * page;

@@ -15,11 +15,12 @@ namespace splice::format {
 
 inline constexpr char kMagic[8] = {'S', 'P', 'L', 'I', 'C', 'E', '\r', '\n'};
 inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kCompressedVersion = 5;  // compressed_model.h
 inline constexpr std::uint64_t kSectionAlignment = 64;
 
 struct FileHeader {
     char magic[8];                // kMagic; the CR LF shows a transfer in text mode
-    std::uint32_t version;        // kVersion; any other value is refused
+    std::uint32_t version;        // kVersion or kCompressedVersion; any other value is refused
     std::uint32_t section_count;  // entries in the table
     std::uint64_t file_bytes;     // size of the whole file
     std::uint64_t checksum;       // checksum.h over the whole file with this field taken as 0
@@ -49,7 +50,7 @@ struct SectionEntry {
     std::uint32_t stride;    // bytes an element; must equal the struct's size
     std::uint64_t offset;    // from the start of the file
     std::uint64_t count;     // elements
-    std::uint64_t reserved;  // 0
+    std::uint64_t reserved;  // 0; in a compressed file, bytes of the section there, 0 if it is not compressed
 };
 static_assert(sizeof(SectionEntry) == 32);
 

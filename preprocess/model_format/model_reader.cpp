@@ -53,6 +53,8 @@ class Parser {
         if (header_.version >= 1 && header_.version < kVersion)
             fail(offsetof(FileHeader, version), "format version ", header_.version, ", this program reads version ",
                  kVersion, ": bake the model again from its source with splice-bake");
+        if (header_.version == kCompressedVersion)
+            fail(offsetof(FileHeader, version), "a compressed model inside another file, expected a plain one");
         if (header_.version != kVersion)
             fail(offsetof(FileHeader, version), "format version ", header_.version, ", this program reads version ",
                  kVersion);

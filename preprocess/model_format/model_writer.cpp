@@ -1,5 +1,6 @@
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/checksum.h"
+#include "preprocess/model_format/compressed_model.h"
 #include "preprocess/model_format/model.h"
 #include "preprocess/model_format/packed_surfel.h"
 #include "preprocess/model_format/section_layout.h"
@@ -82,6 +83,14 @@ std::uint64_t write_model(const ModelView& view, const std::filesystem::path& pa
     const std::uint64_t size = write_all(view, [&](std::span<const std::byte> piece) { file.write(piece); });
     file.commit();
     return size;
+}
+
+std::uint64_t write_compressed_model(const ModelView& view, const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = compress_model(serialise_model(view));
+    AtomicFile file(path);
+    file.write(bytes);
+    file.commit();
+    return bytes.size();
 }
 
 std::vector<std::byte> serialise_model(const ModelView& view) {

@@ -1,4 +1,5 @@
 #include "preprocess/model_format/checksum.h"
+#include "preprocess/model_format/compressed_model.h"
 #include "preprocess/model_format/error.h"
 #include "preprocess/model_format/model.h"
 #include "preprocess/model_format/point_node.h"
@@ -70,7 +71,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const bool forged : {false, true}) {
         if (forged) forge_header(bytes);
         try {
-            const ModelView view = parse_model(bytes, "input");
+            const std::vector<std::byte> expanded =
+                is_compressed_model(bytes) ? expand_model(bytes, "input") : std::vector<std::byte>();
+            const ModelView view = parse_model(expanded.empty() ? bytes : expanded, "input");
             // Keeps the reads from being optimised away.
             volatile std::uint64_t sum = walk(view);
             static_cast<void>(sum);

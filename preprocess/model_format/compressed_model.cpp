@@ -1,5 +1,5 @@
-// Sections are turned into planes first (the first bytes of all elements, then the second ones), since bytes of one kind
-// are alike: a point cloud's surfels shrink to 62 % instead of 83 %.
+// Sections are turned into planes first (the first bytes of all elements, then the second ones), since bytes of one
+// kind are alike: a point cloud's surfels shrink to 62 % instead of 83 %.
 #include "preprocess/model_format/compressed_model.h"
 
 #include "preprocess/model_format/checksum.h"
@@ -19,8 +19,8 @@ namespace {
 using namespace format;
 using Bytes = std::vector<std::byte>;
 
-constexpr std::size_t kTable = sizeof(FileHeader), kFirstSection = round_up_to_alignment(
-                                                       kTable + kSectionCount * sizeof(SectionEntry));
+constexpr std::size_t kTable = sizeof(FileHeader),
+                      kFirstSection = round_up_to_alignment(kTable + kSectionCount * sizeof(SectionEntry));
 
 struct Start {
     FileHeader header;
@@ -113,12 +113,12 @@ class Expander {
         throw InputError(name_, "byte " + std::to_string(offset), problem);
     }
     [[noreturn]] void fail_at(std::size_t section, std::size_t field, const std::string& problem) const {
-        fail(kTable + section * sizeof(SectionEntry) + field, "section " + std::to_string(section + 1) + ": " + problem);
+        fail(kTable + section * sizeof(SectionEntry) + field,
+             "section " + std::to_string(section + 1) + ": " + problem);
     }
 
     void check_header() {
-        if (bytes_.size() < kFirstSection)
-            fail(bytes_.size(), "the file ends inside the section table");
+        if (bytes_.size() < kFirstSection) fail(bytes_.size(), "the file ends inside the section table");
         start_ = start_of(bytes_);
         const FileHeader& header = start_.header;
         if (header.file_bytes != bytes_.size())

@@ -19,6 +19,8 @@ namespace {
 using namespace format;
 using Bytes = std::vector<std::byte>;
 
+#ifdef SPLICE_HAS_ZSTD
+
 constexpr std::size_t kTable = sizeof(FileHeader),
                       kFirstSection = round_up_to_alignment(kTable + kSectionCount * sizeof(SectionEntry));
 
@@ -50,8 +52,6 @@ void finish(Bytes& bytes, Start start, std::uint32_t version) {
     start.header.checksum = checksum_of(start.header, bytes);
     std::memcpy(bytes.data(), &start, sizeof start);
 }
-
-#ifdef SPLICE_HAS_ZSTD
 
 constexpr int kLevel = 3;
 

@@ -45,6 +45,11 @@ std::span<const std::byte> SurfelPager::find(std::uint32_t block) const {
     return {slots_[place_[block]].bytes.get(), size_of(block)};
 }
 
+bool SurfelPager::is_reading() const {
+    const std::lock_guard lock(mutex_);
+    return !failure_ && next_missing() != kNowhere;
+}
+
 std::uint64_t SurfelPager::resident_bytes() const {
     const std::lock_guard lock(mutex_);
     return slots_.size() * kBlockBytes;

@@ -43,6 +43,8 @@ class SurfelPager {
     /// Of a block that was last wanted; empty if it is not there yet. Holds until the next want().
     std::span<const std::byte> find(std::uint32_t block) const;
 
+    /// Whether there is still something to read of what was last wanted.
+    bool is_reading() const;
     std::uint64_t resident_bytes() const;
     std::uint64_t blocks_read() const;
 

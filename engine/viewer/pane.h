@@ -11,10 +11,12 @@ namespace splice {
 class Pane {
   public:
     /// Draws the scene anew if settings or `revision` (of everything else that the picture depends on) differ from the
-    /// last time. True if it did.
+    /// last time, or surfels that the last picture lacked were read meanwhile. True if it did.
     bool update(gpu::Device& device, Renderer& renderer, const Scene& scene, std::uint64_t revision,
                 const CaptureSettings& settings);
 
+    /// Whether surfels that the picture lacks are being read.
+    bool is_refining(const Scene& scene) const;
     bool empty() const { return !image_; }
     const gpu::Image& image() const { return image_; }  // in TRANSFER_SRC_OPTIMAL
     const FrameStats& stats() const { return stats_; }  // of the last drawing

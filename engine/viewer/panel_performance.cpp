@@ -77,6 +77,12 @@ void draw_performance_section(PanelContext& context) {
                     grouped(cut.counts.merged_surfels).c_str());
         ImGui::Text("%s patches by triangles", grouped(cut.counts.patches_by_triangles).c_str());
     }
+    if (const PageStats& pages = state.measured.stats.pages; pages.limit_bytes > 0) {
+        ImGui::Text("surfels held %s of %s", megabytes(pages.resident_bytes).c_str(),
+                    megabytes(pages.limit_bytes).c_str());
+        ImGui::Text("%s blocks read, %s surfels missing", grouped(pages.blocks_read).c_str(),
+                    grouped(pages.missing_surfels).c_str());
+    }
     ImGui::Text("device memory %s", megabytes(state.measured.device_bytes).c_str());
     ImGui::Text("attachments %s", megabytes(state.measured.attachment_bytes).c_str());
     ImGui::TextWrapped("%s", state.device_name.c_str());

@@ -72,7 +72,7 @@ bool Viewer::at_rest() const {
 double Viewer::idle_seconds() const {
     const bool scripted = script_at_ < script_.size();
     if (scripted || redraw_ > 0 || moving() || turntable_ || !input_.empty()) return 0;
-    return job_ ? 1.0 / 30 : kIdleSeconds;
+    return job_ || refining_ ? 1.0 / 30 : kIdleSeconds;
 }
 
 void Viewer::run() {
@@ -113,7 +113,7 @@ void Viewer::recover() {
     graphics_.reset();
     graphics_.emplace(window_, instance_, device, state_.present_mode);
     if (state_.scene) {
-        kept.instances = upload_scene(state_.scene->prepared, *graphics_->renderer).scene.instances;
+        kept.instances = upload_scene(state_.scene->prepared, *graphics_->renderer, options_.memory).scene.instances;
         state_.scene->loaded.scene = std::move(kept);
         ++state_.scene_revision;
     }
@@ -206,7 +206,7 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
     scene->name = request.paths.front().filename().string();
     if (request.paths.size() > 1) scene->name += " and " + std::to_string(request.paths.size() - 1) + " more";
     if (state_.first_picture_s == 0) note_start("scene read");
-    scene->loaded = upload_scene(prepared, *graphics_->renderer);
+    scene->loaded = upload_scene(prepared, *graphics_->renderer, options_.memory);
     if (state_.first_picture_s == 0) note_start("scene uploaded");
     scene->prepared = std::move(prepared);
     std::map<const HostModel*, bool> counted;

@@ -51,6 +51,7 @@ gpu::PresentMode parse_present_mode(const std::string& text) {
 std::optional<ViewerCommandLine> parse_viewer_command_line(int argc, const char* const* argv) {
     ViewerCommandLine command;
     std::string size, present_mode, script, shaders;
+    double megabytes = 0;  // 0: all
     std::vector<std::string> inputs;
     CLI::App app(kAbout, "splice-view");
     app.footer(kExamples);
@@ -65,6 +66,11 @@ std::optional<ViewerCommandLine> parse_viewer_command_line(int argc, const char*
                    "How images reach the screen: fifo (default; waits for the display, never tears), relaxed, mailbox "
                    "or immediate; fifo where the display lacks it")
         ->option_text("MODE");
+    app.add_option(
+           "--memory", megabytes,
+           "Hold at most so much of surfels; the others stay in the model file and are read as pictures need them")
+        ->option_text("MB")
+        ->check(CLI::Range(1.0, 1e9));
     app.add_option("--script", script, "Actions to do, one a line (docs/viewer.md); - is standard input")
         ->option_text("FILE");
     app.add_option("--shaders", shaders, "Folder of GLSL sources (shaders/glsl) to compile anew when one changes")
@@ -74,6 +80,7 @@ std::optional<ViewerCommandLine> parse_viewer_command_line(int argc, const char*
     if (!parse_command_line(app, argc, argv)) return std::nullopt;
     if (!size.empty()) command.size = parse_window_size(size);
     if (!present_mode.empty()) command.present_mode = parse_present_mode(present_mode);
+    if (megabytes > 0) command.memory = static_cast<std::uint64_t>(megabytes * 1024 * 1024);
     if (!script.empty()) command.script = script;
     if (!shaders.empty()) command.shaders = shaders;
     command.inputs.assign(inputs.begin(), inputs.end());

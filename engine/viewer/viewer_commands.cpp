@@ -136,6 +136,7 @@ void Viewer::write_statistics(const std::filesystem::path& path) {
     for (const PassHistory::Series& pass : measured_.history.series())
         passes[pass.name] = std::accumulate(pass.ms.begin(), pass.ms.end(), 0.0) / PassHistory::kFrames;
     const ProcessMemory memory = process_memory();
+    const PageStats& pages = measured_.stats.pages;
     const nlohmann::ordered_json json{{"first_picture_s", state_.first_picture_s},
                                       {"start_s", start},
                                       {"frames", frame_times_.count()},
@@ -151,6 +152,11 @@ void Viewer::write_statistics(const std::filesystem::path& path) {
                                       {"surfels_drawn", measured_.stats.surfels_drawn},
                                       {"triangles_drawn", measured_.stats.triangles_drawn},
                                       {"select_ms", cut.select_ms},
+                                      {"pages",
+                                       {{"limit_bytes", pages.limit_bytes},
+                                        {"resident_bytes", pages.resident_bytes},
+                                        {"blocks_read", pages.blocks_read},
+                                        {"missing_surfels", pages.missing_surfels}}},
                                       {"device_bytes", measured_.device_bytes},
                                       {"heap_bytes", memory.heap_bytes},
                                       {"resident_bytes", memory.resident_bytes},

@@ -27,6 +27,7 @@ std::uint32_t shared(std::uint32_t side, double share) {
 
 void Viewer::draw_pictures() {
     pictures_whole_ = true;
+    refining_ = false;
     if (!state_.scene) return;
     bool any_drawn = false;
     const bool reduced = state_.reduce_while_moving && moving();
@@ -49,12 +50,14 @@ void Viewer::draw_pictures() {
             settings.antialias = 1;
             settings.tau = std::max(look.tau, moving_detail_.tau());
         }
+        settings.wait_for_data = false;
         pictures_whole_ =
             pictures_whole_ && share == 1 && settings.antialias == look.antialias && settings.tau == look.tau;
         Pane& pane = graphics_->panes[i];
         const bool drawn = pane.update(graphics_->device, *graphics_->renderer, state_.scene->loaded.scene,
                                        state_.scene_revision, settings);
         any_drawn = any_drawn || drawn;
+        refining_ = refining_ || pane.is_refining(state_.scene->loaded.scene);
         if (!drawn || i != state_.edited_look) continue;
         measured_.stats = pane.stats();
         measured_.history.add(pane.stats().passes);
@@ -66,6 +69,7 @@ void Viewer::draw_pictures() {
     }
     measured_.device_bytes = graphics_->device.memory().statistics().allocated_bytes;
     state_.device_name = graphics_->device.info().name;
+    pictures_whole_ = pictures_whole_ && !refining_;
     if (any_drawn) publish_measurements();
 }
 

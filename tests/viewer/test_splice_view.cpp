@@ -7,6 +7,7 @@
 #include "tests/viewer/virtual_display.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <utility>
@@ -222,6 +223,37 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
     REQUIRE(outcome.exit_code == 0);
     CHECK(difference(read_png(folder / "saved.png"), read_png(folder / "side.png")) == 0);
     CHECK_THAT(read_text(folder / "saved.json"), Catch::Contains("\"here\""));
+}
+
+TEST_CASE("of a model larger than --memory no more is held, and pictures become whole while they are shown") {
+    const auto display = test::VirtualDisplay::start();
+    if (!display) return;
+    const test::TemporaryFolder folder;
+    write_mesh_file(folder / "knot.ply", 800);
+    const test::Outcome baked = test::run({test::program("splice-bake"),
+                                           {(folder / "knot.ply").string(), "-o", (folder / "knot.splice").string(),
+                                            "--representation", "surfels", "--h-max", "0.004", "--quiet"}});
+    REQUIRE(baked.exit_code == 0);
+    write_text(folder / "script.txt",
+               "wait\nstatistics far.json\nscreenshot-window far-window.png\nscreenshot far.png\nkey escape\n"
+               "drag left 600 300 700 350\nmove 640 300\nwheel 6\nwait\nstatistics near.json\n"
+               "screenshot-window near-window.png\nscreenshot near.png\nquit\n");
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.splice", "--device", "cpu", "--validate", "--memory", "1", "--size", "1000x700",
+                          "--script", "script.txt"});
+    REQUIRE(viewer.wait() == 0);
+    CHECK(viewer.err() == "");
+    constexpr std::uint64_t kLimit = 1 << 20;
+    for (const char* name : {"far", "near"}) {
+        INFO(name);
+        const auto pages = nlohmann::json::parse(read_text(folder / (std::string(name) + ".json"))).at("pages");
+        CHECK(pages.at("limit_bytes") == kLimit);
+        CHECK(pages.at("resident_bytes") > 0);
+        CHECK(pages.at("resident_bytes") <= kLimit);
+        CHECK(pages.at("blocks_read") > 0);
+        const Picture window = read_png(folder / (std::string(name) + "-window.png"));
+        CHECK(difference(scene_part(window), read_png(folder / (std::string(name) + ".png"))) == 0);
+    }
 }
 
 TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves the last good ones") {

@@ -7,6 +7,7 @@
 #include "engine/bench/costs_command.h"
 #include "engine/bench/frame/frame_command.h"
 #include "engine/bench/graph/graph_command.h"
+#include "engine/bench/levels_command.h"
 #include "engine/bench/quality_command.h"
 #include "engine/bench/report_files.h"
 #include "engine/capture/picture_size.h"
@@ -155,7 +156,14 @@ int run(int argc, char** argv) {
     bench::CostsCommand costs_command;
     const CLI::App& costs = bench::add_costs_command(app, costs_command);
 
+    bench::LevelsCommand levels_command;
+    const CLI::App& levels = bench::add_levels_command(app, levels_command);
+
     if (!parse_command_line(app, argc, argv)) return 0;
+    if (levels.parsed()) {
+        bench::run_levels_command(levels_command);
+        return 0;
+    }
     if (costs.parsed()) {
         bench::run_costs_command(costs_command);
         return 0;

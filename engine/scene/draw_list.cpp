@@ -1,6 +1,7 @@
 #include "engine/scene/draw_list.h"
 
 #include "engine/scene/gpu_model.h"
+#include "engine/scene/patch_view.h"
 
 #include <tbb/parallel_for.h>
 
@@ -8,30 +9,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace splice {
 
 namespace {
 
-// The error of a level of triangles is a root mean square: somewhere they are this many times as far off, about.
-constexpr double kWorstOfError = 4;
-
-enum class Containment { kOutside, kPartly, kInside };
-
-template <typename T>
-glm::dvec3 vector_of(const T (&v)[3]) {
-    return {v[0], v[1], v[2]};
-}
-
 class Culler {
   public:
     Culler(const Camera& camera, std::uint32_t width, std::uint32_t height, const DrawListOptions& options,
            InstanceDraws& draws)
-        : camera_(camera), options_(options), draws_(draws), scale_(pixel_scale(camera, height)) {
-        half_x_ = 0.5 * width / scale_;
-        half_y_ = 0.5 * height / scale_;
-    }
+        : camera_(camera),
+          options_(options),
+          draws_(draws),
+          seen_(camera, width, height, draws.model_to_view, draws.scale) {}
 
     void visit_all() {
         const auto& octree = draws_.model->octree();
@@ -44,10 +34,7 @@ class Culler {
     }
 
   private:
-    struct Extent {
-        Containment containment;
-        double nearest;  // depth, view space
-    };
+    using Extent = PatchView::Extent;
 
     // Whether surfels come from the point tree; if not, from the patches.
     bool cuts() const {
@@ -73,44 +60,30 @@ class Culler {
         for (std::size_t i = 0; i < costs.size(); ++i) {
             const format::Patch& patch = draws_.model->patches()[i];
             if (patch.surfel_count == 0) continue;
-            const Extent extent = locate(patch.bounds_min, patch.bounds_max);
+            const Extent extent = seen_.locate(patch.bounds_min, patch.bounds_max);
             if (extent.containment == Containment::kOutside) continue;
             const format::Lod& level = level_of(patch, extent.nearest);
             if (level.index_count == 0) continue;  // a cloud's
-            const DrawLoad load = load_of_triangles(patch, level, extent.nearest);
-            costs[i] =
-                (price.triangle * load.triangles + price.triangle_hit * load.triangle_hits +
-                 price.triangle_pixel * load.triangle_pixels - price.splat_pixel * pixels_of(patch, extent.nearest)) /
-                price.splat;
+            const double pixels = pixels_of(patch, extent.nearest);
+            const DrawLoad load = PatchView::load_of_triangles(level, pixels, draws_.two_sided);
+            costs[i] = (price.triangle * load.triangles + price.triangle_hit * load.triangle_hits +
+                        price.triangle_pixel * load.triangle_pixels - price.splat_pixel * pixels) /
+                       price.splat;
         }
         return costs;
     }
 
-    // Of a surface that is turned every way, half of the patch's area as it is seen face on. A cloud's area is not
-    // known: the mean silhouette of a box is a quarter of its surface.
     double pixels_of(const format::Patch& patch, double nearest) const {
-        const double unit = scale_ * draws_.scale / (camera_.orthographic ? 1 : std::max(nearest, camera_.near_plane));
-        const double all = 4 * half_x_ * half_y_ * scale_ * scale_;
-        const glm::dvec3 size = vector_of(patch.bounds_max) - vector_of(patch.bounds_min);
-        const double of_box = 0.5 * (size.x * size.y + size.y * size.z + size.z * size.x);
-        const double seen = patch.area > 0.0F ? 0.5 * static_cast<double>(patch.area) : of_box;
-        return std::min(seen * unit * unit, all);
-    }
-
-    DrawLoad load_of_triangles(const format::Patch& patch, const format::Lod& level, double nearest) const {
-        // Patches that face away are not left out: half of what is drawn of a closed surface is culled by the device.
-        const double seen = draws_.two_sided ? 1 : 0.5;
-        const double triangles = level.index_count / 3, pixels = seen * pixels_of(patch, nearest);
-        return {.triangles = triangles, .triangle_hits = std::min(seen * triangles, pixels), .triangle_pixels = pixels};
+        return seen_.pixels_of(static_cast<double>(patch.area), patch.bounds_min, patch.bounds_max, nearest);
     }
 
     CutView cut_view(std::span<const double> costs) const {
         return {.model_to_view = draws_.model_to_view,
                 .scale = draws_.scale,
                 .orthographic = camera_.orthographic,
-                .pixel_scale = scale_,
-                .half_x = half_x_,
-                .half_y = half_y_,
+                .pixel_scale = seen_.pixel_scale(),
+                .half_x = seen_.half_x(),
+                .half_y = seen_.half_y(),
                 .near_plane = camera_.near_plane,
                 .two_sided = draws_.two_sided,
                 .tau = options_.tau,
@@ -118,74 +91,16 @@ class Culler {
                 .triangle_costs = costs};
     }
 
-    // The coarsest triangles whose error is within tau wherever in the patch it is.
+    // The coarsest triangles whose error is within tau.
     const format::Lod& level_of(const format::Patch& patch, double nearest) const {
-        const format::Lod* level = &draws_.model->lods()[patch.first_lod];
-        if (options_.tau == 0 || (!camera_.orthographic && nearest <= camera_.near_plane)) return *level;
-        const double stretch = camera_.orthographic ? 1 : std::hypot(1.0, half_x_, half_y_) / nearest;
-        const double pixels = scale_ * draws_.scale * stretch;
-        for (std::uint32_t next = 1; next < patch.lod_count; ++next) {
-            const format::Lod& coarser = draws_.model->lods()[patch.first_lod + next];
-            if (kWorstOfError * static_cast<double>(coarser.error) * pixels > options_.tau) break;
-            level = &coarser;
-        }
-        return *level;
-    }
-
-    // A box of unit-box space against the frustum. The prefilter lets splats reach beyond their disks, and so beyond
-    // the box: what misses the picture by no more than that is kept.
-    Extent locate(const float (&low)[3], const float (&high)[3]) const {
-        const double margin = kPrefilterReach / scale_;
-        std::array<int, 5> outside{};
-        std::array<int, 5> inside{};
-        double nearest = std::numeric_limits<double>::max();
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec4 p =
-                draws_.model_to_view * glm::dvec4((corner & 1) ? high[0] : low[0], (corner & 2) ? high[1] : low[1],
-                                                  (corner & 4) ? high[2] : low[2], 1);
-            const double depth = -p.z;
-            const double reach = camera_.orthographic ? 1 : depth;
-            const std::array<double, 5> beyond{p.x - half_x_ * reach, -p.x - half_x_ * reach, p.y - half_y_ * reach,
-                                               -p.y - half_y_ * reach, camera_.near_plane - depth};
-            const double slack = margin * std::max(reach, 0.0);
-            for (std::size_t plane = 0; plane < beyond.size(); ++plane) {
-                outside[plane] += beyond[plane] > (plane < 4 ? slack : 0) ? 1 : 0;
-                inside[plane] += beyond[plane] < 0 ? 1 : 0;
-            }
-            nearest = std::min(nearest, depth);
-        }
-        const auto all = [](int corners) { return corners == 8; };
-        if (std::any_of(outside.begin(), outside.end(), all)) return {Containment::kOutside, nearest};
-        return {std::all_of(inside.begin(), inside.end(), all) ? Containment::kInside : Containment::kPartly, nearest};
-    }
-
-    // True if every normal in the patch's cone is beyond the horizon from the eye, wherever in the patch it sits
-    // (Pajarola et al. 2004, section 6.2, with the extent of the patch taken into account: beta + theta + alpha < 90
-    // degrees, here less what shaders draw beyond the horizon).
-    bool faces_away(const format::Patch& patch) const {
-        if (patch.cone_cos <= 0) return false;
-        const glm::dvec3 axis = glm::normalize(glm::dmat3(draws_.model_to_view) * vector_of(patch.cone_axis));
-        const double spread = std::acos(std::min(static_cast<double>(patch.cone_cos), 1.0));
-        glm::dvec3 away(0, 0, -1);
-        double alpha = 0;
-        if (!camera_.orthographic) {
-            const glm::dvec3 low = vector_of(patch.bounds_min), high = vector_of(patch.bounds_max);
-            const glm::dvec3 centre(draws_.model_to_view * glm::dvec4((low + high) * 0.5, 1));
-            const double radius = 0.5 * glm::length(high - low) * draws_.scale;
-            const double distance = glm::length(centre);
-            if (distance <= radius) return false;
-            away = centre / distance;
-            alpha = std::asin(radius / distance);
-        }
-        const double beta = std::acos(std::clamp(glm::dot(axis, away), -1.0, 1.0));
-        constexpr double kRounding = 1e-3;  // radians; normals are quantised
-        return beta + spread + alpha + kRounding < std::acos(-kHorizon);
+        const auto levels = std::span(draws_.model->lods()).subspan(patch.first_lod, patch.lod_count);
+        return levels[seen_.levels_within(levels.subspan(1), options_.tau, nearest)];
     }
 
     void visit_node(std::uint32_t index) {
         const auto& octree = draws_.model->octree();
         const format::OctreeNode& node = octree[index];
-        const Extent extent = locate(node.bounds_min, node.bounds_max);
+        const Extent extent = seen_.locate(node.bounds_min, node.bounds_max);
         if (extent.containment == Containment::kOutside) return;
         std::uint32_t next = node.first_patch;
         const std::uint32_t end = node.first_patch + node.patch_count;
@@ -211,16 +126,18 @@ class Culler {
                                patch.representation == format::Representation::kTriangles ||
                                (!by_triangles_.empty() && by_triangles_[index]);
         if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return;
-        const Extent extent = locate(patch.bounds_min, patch.bounds_max);
+        const Extent extent = seen_.locate(patch.bounds_min, patch.bounds_max);
         if (extent.containment == Containment::kOutside) return;
+        if (!draws_.two_sided && seen_.faces_away(patch.cone_axis, patch.cone_cos, patch.bounds_min, patch.bounds_max))
+            return;
         if (triangles) {
             const format::Lod& level = level_of(patch, extent.nearest);
-            draws_.load += load_of_triangles(patch, level, extent.nearest);
+            draws_.load += PatchView::load_of_triangles(level, pixels_of(patch, extent.nearest), draws_.two_sided);
             append(draws_.triangles, {level.first_index, level.index_count, patch.material, index},
                    options_.merge_patches);
             return;
         }
-        if (patch.surfel_count == 0 || (!draws_.two_sided && faces_away(patch))) return;
+        if (patch.surfel_count == 0) return;
         draws_.load.splat_pixels += pixels_of(patch, extent.nearest);
         if (cuts()) return;
         draws_.load.splats += static_cast<double>(patch.surfel_count);
@@ -237,8 +154,8 @@ class Culler {
     double largest_splat(const format::Patch& patch, double nearest) const {
         if (nearest <= camera_.near_plane) return std::numeric_limits<double>::infinity();
         const double radius = kSolidReach * patch.max_surfel_radius * draws_.scale;
-        const double stretch = camera_.orthographic ? 1 : (1 + std::max(half_x_, half_y_)) / nearest;
-        return 2 * (scale_ * radius * stretch + kPrefilterReach);
+        const double stretch = camera_.orthographic ? 1 : (1 + std::max(seen_.half_x(), seen_.half_y())) / nearest;
+        return 2 * (seen_.pixel_scale() * radius * stretch + kPrefilterReach);
     }
 
     static void append(std::vector<DrawRange>& ranges, const DrawRange& range, bool merge) {
@@ -257,8 +174,7 @@ class Culler {
     const Camera& camera_;
     const DrawListOptions& options_;
     InstanceDraws& draws_;
-    double scale_;                    // pixels per unit at depth 1, or anywhere
-    double half_x_, half_y_;          // of the picture, at depth 1 or anywhere
+    PatchView seen_;
     std::vector<bool> by_triangles_;  // surfel patches, where the cut chose
 };
 

@@ -1,8 +1,8 @@
 // Models that are larger than the memory they may take.
 #include "engine/capture/capture.h"
-#include "engine/metrics/image_metrics.h"
 #include "engine/scene/surfel_pager.h"
 #include "preprocess/build_model/build_model.h"
+#include "tests/engine/frame_holes.h"
 #include "tests/support/test_files.h"
 
 #include <catch2/catch.hpp>
@@ -65,18 +65,6 @@ class RandomCameras {
     glm::dvec3 place_{0, 0, 1};
 };
 
-// Pixels inside what `full` covers that `paged` does not cover; where a model begins, ellipses and disks differ.
-std::size_t holes(const Frame& full, const Frame& paged) {
-    metrics::Mask covered(full.width, full.height);
-    for (std::size_t i = 0; i < full.coverage.size(); ++i)
-        covered.pixels[i] = full.coverage[i] != 0;
-    const metrics::Mask inside = metrics::eroded(covered, 2);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < full.coverage.size(); ++i)
-        count += inside.pixels[i] != 0 && paged.coverage[i] == 0;
-    return count;
-}
-
 void fly_through(std::size_t points, int frames) {
     const Subject subject(points);
     const std::uint64_t limit = 2 * kBlock;
@@ -94,7 +82,7 @@ void fly_through(std::size_t points, int frames) {
         settings.tau = 6 * (i % 3);
         settings.wait_for_data = i % 4 == 0;
         const Frame full = renderer.render(whole, settings), part = renderer.render(paged, settings);
-        CHECK(holes(full, part) == 0);
+        CHECK(test::holes(full, part) == 0);
         CHECK(full.stats.pages.limit_bytes == 0);
         CHECK(part.stats.pages.limit_bytes == limit);
         CHECK(part.stats.pages.resident_bytes <= limit);

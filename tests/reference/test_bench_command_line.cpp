@@ -221,7 +221,7 @@ TEST_CASE("splice-bench never writes over what it reads") {
           "holes '" + mesh + "' --json '" + mesh + "'", "quality '" + mesh + "' --json '" + mesh + "'",
           "quality '" + scene + "' --json '" + mesh + "'", "frame '" + scene + "' --json '" + mesh + "'",
           "frame '" + scene + "' --html '" + scene + "'", "costs '" + scene + "' --json '" + scene + "'",
-          "confetti '" + mesh + "' --json '" + mesh + "'",
+          "confetti '" + mesh + "' --json '" + mesh + "'", "levels '" + mesh + "' --json '" + mesh + "'",
           "graph --no-device --vs '" + report + "' --json '" + report + "'",
           "graph --no-device --json '" + report + ".new' --html '" + report + ".new'"}) {
         INFO(arguments);

@@ -25,6 +25,8 @@ inline void radix_sort_by_high_half(std::vector<std::uint64_t>& entries) {
     }
     std::vector<std::uint64_t> sorted(entries.size());
     for (std::size_t pass = 0; pass < kPasses; ++pass) {
+        // The same digit everywhere, as the highest of small keys is: nothing to sort.
+        if (!entries.empty() && begin[pass][digit(entries[0], pass)] == entries.size()) continue;
         std::size_t sum = 0;
         for (std::size_t& b : begin[pass])
             sum += std::exchange(b, sum);

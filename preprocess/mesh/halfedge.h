@@ -17,17 +17,16 @@ struct FacePair {
 };
 
 struct FaceAdjacency {
-    std::vector<FacePair> pairs;       // one for each edge with exactly two faces, whatever their orientation
-    std::uint64_t detached_faces = 0;  // faces that the half-edge structure could only take with vertices of their own
+    std::vector<FacePair> pairs;   // one for each edge with exactly two faces, whatever their orientation
+    std::uint64_t torn_edges = 0;  // with more than two faces, or two that run the same way along it
 };
 
-/// An edge used by three or more faces pairs nothing: it is a border for whoever walks the pairs. Faces that no
-/// half-edge structure can hold (non-manifold edges, Moebius seams, several fans at a vertex) are inserted with
-/// duplicated vertices; edges which that tears apart are joined again if they have exactly two faces. `mesh` needs the
-/// invariants of IndexedMesh. O(faces), about 3 M faces a second.
+/// An edge used by three or more faces pairs nothing: it is a border for whoever walks the pairs. What no half-edge
+/// structure can hold (non-manifold edges, Moebius seams, several fans at a vertex) it gets with duplicated vertices
+/// and edges; edges that are torn apart so are joined again if they have exactly two faces. `mesh` needs the invariants
+/// of IndexedMesh. O(faces).
 ///
-/// Faces are inserted in `order`, a permutation of them; an order that keeps neighbours together is up to twice as
-/// fast.
+/// Faces are inserted in `order`, a permutation of them; an order that keeps neighbours together is faster.
 FaceAdjacency find_face_adjacency(const IndexedMesh& mesh, std::span<const std::uint32_t> order);
 
 }  // namespace splice

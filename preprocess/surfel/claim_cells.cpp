@@ -40,31 +40,24 @@ __attribute__((target("avx2"))) void mark_wide(const SiteReach& reach, const Cel
     mark(reach, cells, marks);
 }
 
-bool has_wide_vectors() {
-    static const bool has = __builtin_cpu_supports("avx2") != 0;
-    return has;
-}
-
 #else
 
 void claim_wide(const SiteReach&, float, std::uint32_t, const CellRange&, float*, std::uint32_t*) {}
 void mark_wide(const SiteReach&, const CellRange&, std::uint32_t*) {}
-bool has_wide_vectors() {
-    return false;
-}
 
 #endif
 
 }  // namespace
 
 void claim_cells(const SiteReach& reach, float scale, std::uint32_t site, const CellRange& cells, float* nearest,
-                 std::uint32_t* owner) {
-    if (has_wide_vectors()) return claim_wide(reach, scale, site, cells, nearest, owner);
+                 std::uint32_t* owner, VectorWidth widest) {
+    if (widest >= VectorWidth::k256 && has_256_bit_vectors())
+        return claim_wide(reach, scale, site, cells, nearest, owner);
     claim(reach, scale, site, cells, nearest, owner);
 }
 
-void mark_cells(const SiteReach& reach, const CellRange& cells, std::uint32_t* marks) {
-    if (has_wide_vectors()) return mark_wide(reach, cells, marks);
+void mark_cells(const SiteReach& reach, const CellRange& cells, std::uint32_t* marks, VectorWidth widest) {
+    if (widest >= VectorWidth::k256 && has_256_bit_vectors()) return mark_wide(reach, cells, marks);
     mark(reach, cells, marks);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "preprocess/surfel/voronoi_cover.h"
+#include "preprocess/vector_width.h"
 
 #include <cstdint>
 
@@ -39,9 +40,10 @@ struct CellRange {
 /// Cells that the site reaches and that are nearer to it than to their owner change hands; distances are squared and
 /// times `scale`.
 void claim_cells(const SiteReach& reach, float scale, std::uint32_t site, const CellRange& cells, float* nearest,
-                 std::uint32_t* owner);
+                 std::uint32_t* owner, VectorWidth widest = VectorWidth::k256);
 
 /// Sets the marks of the cells that the site reaches to 1.
-void mark_cells(const SiteReach& reach, const CellRange& cells, std::uint32_t* marks);
+void mark_cells(const SiteReach& reach, const CellRange& cells, std::uint32_t* marks,
+                VectorWidth widest = VectorWidth::k256);
 
 }  // namespace splice

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
 using namespace splice;
 using namespace splice::test;
@@ -51,7 +52,7 @@ TEST_CASE("Each edge with two faces pairs them") {
                                     repaired(shapes::terrain(9)), repaired(shapes::machined_part(8))}) {
         const FaceAdjacency adjacency = find_face_adjacency(mesh, order_faces(mesh));
         CHECK(pairs_of(adjacency) == pairs_by_edges(mesh));
-        CHECK(adjacency.detached_faces == 0);
+        CHECK(adjacency.torn_edges == 0);
     }
 }
 
@@ -61,7 +62,7 @@ TEST_CASE("Faces around a non-manifold edge are kept and the edge is a border") 
     const IndexedMesh three = bare_mesh(kFivePoints, fan);
     const FaceAdjacency adjacency = find_face_adjacency(three, order_faces(three));
     CHECK(adjacency.pairs.empty());
-    CHECK(adjacency.detached_faces > 0);
+    CHECK(adjacency.torn_edges == 1);
     CHECK(order_faces(three).size() == 3);
 
     std::vector<Vec3d> six = kFivePoints;
@@ -96,6 +97,27 @@ TEST_CASE("A Moebius strip has no seam") {
     const Pairs pairs = pairs_of(find_face_adjacency(strip, order_faces(strip)));
     CHECK(pairs == pairs_by_edges(strip));
     CHECK(pairs.size() == triangles.size());
+}
+
+TEST_CASE("Any tangle of triangles is paired by its edges") {
+    std::mt19937 random(5);
+    for (const std::uint32_t vertices : {5u, 8u, 20u, 60u}) {
+        for (int round = 0; round < 20; ++round) {
+            std::vector<Vec3d> positions;
+            for (std::uint32_t v = 0; v < vertices; ++v)
+                positions.emplace_back(std::cos(v * 1.7), std::sin(v * 2.3), std::cos(v * v * 0.7));
+            std::set<std::set<std::uint32_t>> seen;
+            std::vector<Triangle> triangles;
+            for (std::uint32_t i = 0; i < 2 * vertices; ++i) {
+                const auto any = [&] { return static_cast<std::uint32_t>(random() % vertices); };
+                const Triangle t{any(), any(), any()};
+                const std::set<std::uint32_t> corners(t.begin(), t.end());
+                if (corners.size() == 3 && seen.insert(corners).second) triangles.push_back(t);
+            }
+            const IndexedMesh tangle = bare_mesh(positions, triangles);
+            REQUIRE(pairs_of(find_face_adjacency(tangle, order_faces(tangle))) == pairs_by_edges(tangle));
+        }
+    }
 }
 
 TEST_CASE("Two fans that share a vertex stay apart") {

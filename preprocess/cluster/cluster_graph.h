@@ -33,6 +33,7 @@ class ClusterGraph {
     /// Starts loading what merging into or beside `slot` will touch.
     void prefetch(std::uint32_t slot) const {
         __builtin_prefetch(&slots_[slot], 1);
+        __builtin_prefetch(&changed_[slot], 1);
         __builtin_prefetch(&arena_[slot * kQuad], 1);  // where its list began, and mostly still is
     }
     /// Merges so far, the time.

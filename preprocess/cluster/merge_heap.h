@@ -41,6 +41,9 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
     /// Queues the first pair that `owner` looks after, of those beyond `passed`.
     const auto offer_next = [&](std::uint32_t owner, const QueuedPair& passed) {
         QueuedPair first = QueuedPair::last();
+        // All at once: branches that depend on one neighbour's data would hold up the next one's.
+        for (const ClusterLink& l : graph.links(owner))
+            metric.prefetch(l.slot);
         for (const ClusterLink& l : graph.links(owner)) {
             const bool looks_after =
                 std::tuple(graph.changed(l.slot), owner) < std::tuple(graph.changed(owner), l.slot);

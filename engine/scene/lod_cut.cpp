@@ -1,10 +1,9 @@
-// Pajarola et al. 2004, section 6.2. All in the model's unit-box space, where nodes need not be transformed. A node's
-// children are looked at together, without a branch: what becomes of each is worked out from all tests at once, since
-// what a test says is not to be guessed, and a wrong guess takes as long as the tests do. Single precision, with what
-// it may be off by on the side of drawing.
+// Pajarola et al. 2004, section 6.2. All in the model's unit-box space, where nodes need not be transformed. A visit
+// takes no division and no angle: what the paper compares is multiplied out.
 #include "engine/scene/lod_cut.h"
 
 #include "engine/scene/splat_reach.h"
+#include "preprocess/model_format/octahedral.h"
 
 #include <tbb/parallel_for.h>
 
@@ -18,37 +17,37 @@ namespace splice {
 
 namespace {
 
+constexpr std::size_t kConeSteps = 255;  // format::PointNode::cone_angle
 // Subtrees that are walked at once.
 constexpr std::size_t kTasks = 64;
 constexpr int kMostRounds = 8;
 // Surfels that are not worth looking for nodes that face away.
 constexpr std::uint32_t kHardlyAway = 256;
 
-enum class Step : std::uint8_t { kDescend, kEllipse, kSurfels };
-
-// A node that is in the cut, or of which something below is.
 struct Visit {
     std::uint32_t node;
-    std::uint32_t surfel_end;  // below it
     std::uint32_t level;
-    Step step;
-    bool inside;  // its disks are wholly in the frustum
-    bool fits;    // CutRun::fits_point of what is drawn
-    bool choose;  // between this and triangles
+    bool inside;          // its disks are wholly in the frustum
+    bool chosen = false;  // a patch of which surfels are to be drawn
 };
 
-// Distances in three directions, and an offset: of a point, dot(xyz, p) + w.
-struct Plane {
-    float x, y, z, w;
+// How far the axis of a cone may be from the eye's side: the cosine and sine of what is left between the cone's rim and
+// the horizon.
+struct Limit {
+    double cosine = 2, sine = 0;  // never
 };
 
-Plane plane_of(const glm::dvec4& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)};
+// Indexed by cone_angle.
+std::array<Limit, kConeSteps + 1> cone_limits() {
+    constexpr double kRounding = 1e-3;  // radians; normals are quantised
+    const double horizon = std::acos(-kHorizon) - kRounding;
+    std::array<Limit, kConeSteps + 1> limits;
+    for (std::size_t step = 0; step <= kConeSteps; ++step) {
+        const double left = horizon - static_cast<double>(step) * (std::numbers::pi / kConeSteps);
+        if (left > 0) limits[step] = {std::cos(left), std::sin(left)};
+    }
+    return limits;
 }
-
-// A figure of each child.
-template <typename T>
-using Lanes = std::array<T, kHierarchyLanes>;
 
 // What all visits of a walk share.
 class Rules {
@@ -61,100 +60,61 @@ class Rules {
                    inverse;
         };
         const glm::dvec4 right = row(0), up = row(1), depth = -row(2);
-        depth_ = plane_of(depth);
+        depth_ = depth;
         // Distances beyond the four sides, in units that make them lengths.
         const auto side = [&](const glm::dvec4& across, double half) {
-            if (view.orthographic) return plane_of(across - glm::dvec4(0, 0, 0, half * inverse));
-            return plane_of((across - half * depth) / std::hypot(1.0, half));
+            if (view.orthographic) return across - glm::dvec4(0, 0, 0, half * inverse);
+            return (across - half * depth) / std::hypot(1.0, half);
         };
         sides_ = {side(right, view.half_x), side(-right, view.half_x), side(up, view.half_y), side(-up, view.half_y)};
-        near_ = static_cast<float>(view.near_plane * inverse);
-        const glm::dvec3 eye = -(right.w * glm::dvec3(right) + up.w * glm::dvec3(up) + depth.w * glm::dvec3(depth));
-        eye_ = plane_of(glm::dvec4(eye, 0));
-        // Coordinates are below 1, distances up to these: a few roundings of each.
-        constexpr double kRoundings = 8 * 0x1p-24;
-        rounding_ = static_cast<float>(kRoundings *
-                                       (2 + glm::length(eye) + std::abs(right.w) + std::abs(up.w) + std::abs(depth.w)));
-        slack_ = static_cast<float>(kPrefilterReach / view.pixel_scale * (view.orthographic ? inverse : 1.0));
+        near_ = view.near_plane * inverse;
+        slack_ = kPrefilterReach / view.pixel_scale * (view.orthographic ? inverse : 1.0);
+        eye_ = -(right.w * glm::dvec3(right) + up.w * glm::dvec3(up) + depth.w * glm::dvec3(depth));
         const double pixels = view.pixel_scale * (view.orthographic ? view.scale : 1.0);
-        longest_ = static_cast<float>(view.tau / (2 * pixels) * (1 - 1e-6));
+        longest_ = view.tau / (2 * pixels);
         const double stretch = view.orthographic ? 1 : 1 + std::max(view.half_x, view.half_y);
-        largest_point_ =
-            static_cast<float>((view.max_point_size / 2 - kPrefilterReach) / (pixels * std::numbers::sqrt2 * stretch));
-        perspective_ = view.orthographic ? 0.0f : 1.0f;
+        largest_point_ = (view.max_point_size / 2 - kPrefilterReach) / (pixels * std::numbers::sqrt2 * stretch);
     }
 
-    // Of siblings, those that something is drawn of; how many.
-    std::size_t decide(std::uint32_t first, std::size_t count, const Visit& parent, Lanes<Visit>& visits,
-                       CutStatistics& statistics) const {
-        const PointHierarchy& h = hierarchy_;
-        const auto at = [&](const std::vector<float>& array) { return array.data() + first; };
-        const float *const x = at(h.x), *const y = at(h.y), *const z = at(h.z), *const radius = at(h.radius),
-                           *const extent = at(h.extent);
-        Lanes<float> depth, distance2, beyond;
-        for (std::size_t i = 0; i < kHierarchyLanes; ++i) {
-            depth[i] = x[i] * depth_.x + y[i] * depth_.y + z[i] * depth_.z + depth_.w;
-            const float dx = x[i] - eye_.x, dy = y[i] - eye_.y, dz = z[i] - eye_.z;
-            distance2[i] = dx * dx + dy * dy + dz * dz;
+    enum class Step { kEnd, kDescend, kChoose };
+
+    // What becomes of a node; where it ends the walk, what is drawn of it is in the cut.
+    Step decide(const Visit& visit, bool& inside, LodCut& cut) const {
+        const CutNode& node = hierarchy_.nodes[visit.node];
+        ++cut.statistics.visited;
+        const glm::dvec3 centre(node.centre[0], node.centre[1], node.centre[2]);
+        const auto radius = static_cast<double>(node.radius);
+        const double depth = glm::dot(glm::dvec3(depth_), centre) + depth_.w;
+        inside = visit.inside;
+        if (!inside && outside(centre, depth, radius, inside)) {
+            ++cut.statistics.outside_frustum;
+            return Step::kEnd;
         }
-        Lanes<std::uint8_t> outside{}, inside, away{}, small, fits_whole, fits_disks, coarse;
-        if (parent.inside) {
-            inside.fill(1);
-        } else {
-            beyond.fill(-std::numeric_limits<float>::infinity());
-            for (const Plane& side : sides_)
-                for (std::size_t i = 0; i < kHierarchyLanes; ++i)
-                    beyond[i] = std::max(beyond[i], x[i] * side.x + y[i] * side.y + z[i] * side.z + side.w);
-            for (std::size_t i = 0; i < kHierarchyLanes; ++i) {
-                const float before = near_ - depth[i];
-                const float slack =
-                    slack_ * (1 - perspective_ + perspective_ * std::max(depth[i] + radius[i], 0.0f)) + rounding_;
-                outside[i] =
-                    static_cast<std::uint8_t>((before > radius[i] + rounding_) | (beyond[i] > radius[i] + slack));
-                inside[i] = static_cast<std::uint8_t>(std::max(before, beyond[i]) < -radius[i] - rounding_);
-            }
+        const glm::dvec3 from_eye = centre - eye_;
+        const double distance2 = glm::dot(from_eye, from_eye);
+        const CutNodeDetail& detail = hierarchy_.details[visit.node];
+        if (!view_.two_sided && faces_away(detail, from_eye, distance2, radius)) {
+            ++cut.statistics.facing_away;
+            return Step::kEnd;
         }
-        if (!view_.two_sided) faces_away(first, distance2, away);
-        const float longest2 = longest_ * longest_, largest = h.largest_radius;
-        const float* const finest = at(h.finest);
-        for (std::size_t i = 0; i < kHierarchyLanes; ++i) {
-            // A length takes at most so many pixels per unit wherever around the node it is: distance / nearest^2, the
-            // norm of the projection's derivative, which is largest across the picture's middle.
-            const float nearest = depth[i] - radius[i];
-            const float scale = 1 - perspective_ + perspective_ * nearest;
-            const float most = longest2 * scale * scale;
-            const float stretch =
-                1 - perspective_ + perspective_ * (distance2[i] / std::max(nearest * nearest, near_ * near_));
-            small[i] = static_cast<std::uint8_t>((perspective_ * nearest > near_ * perspective_ - (1 - perspective_)) &
-                                                 (extent[i] * extent[i] * stretch <= most));
-            const float point = largest_point_ * scale;
-            fits_whole[i] = static_cast<std::uint8_t>(radius[i] <= point);
-            fits_disks[i] = static_cast<std::uint8_t>(std::min(radius[i], largest) <= point);
-            // Nothing below is small enough from anywhere.
-            coarse[i] = static_cast<std::uint8_t>(
-                finest[i] > longest_ * (1 - perspective_ + perspective_ * (depth[i] + radius[i])));
+        const std::uint32_t surfels = hierarchy_.surfel_counts[visit.node];
+        const double nearest = depth - radius;
+        if (small_enough(static_cast<double>(node.extent), nearest, distance2)) {
+            ++cut.statistics.ellipses;
+            cut.statistics.merged_surfels += surfels;
+            append(cut, {visit.node, 1, true, fits_point(inside, radius, nearest), visit.level});
+            return Step::kEnd;
         }
-        std::size_t kept = 0;
-        statistics.visited += count;
-        for (std::size_t i = 0; i < count; ++i) {
-            const auto node = static_cast<std::uint32_t>(first + i);
-            const std::uint8_t below = h.below[node];
-            statistics.outside_frustum += outside[i];
-            statistics.facing_away += static_cast<std::uint8_t>(away[i] & (outside[i] ^ 1));
-            const std::uint32_t end = i + 1 < count ? h.first_surfel[node + 1] : parent.surfel_end;
-            const std::uint32_t surfels = end - h.first_surfel[node];
-            const bool in = inside[i] != 0;
-            const bool full =
-                in & (fits_disks[i] != 0) & (view_.two_sided | (surfels <= kHardlyAway)) & (coarse[i] != 0);
-            const bool leaf = (below & PointHierarchy::kChildren) == 0;
-            const bool ellipse = small[i] != 0;
-            const Step step = ellipse ? Step::kEllipse : full | leaf ? Step::kSurfels : Step::kDescend;
-            const std::uint8_t fits = ellipse ? fits_whole[i] : fits_disks[i];
-            const bool choose = ((below & PointHierarchy::kIsPatch) != 0) & !ellipse & !view_.triangle_costs.empty();
-            visits[kept] = {node, end, parent.level + 1, step, in, in && fits != 0, choose};
-            kept += (outside[i] | away[i]) == 0 ? 1 : 0;
-        }
-        return kept;
+        if (detail.is_patch && !visit.chosen && !view_.triangle_costs.empty()) return Step::kChoose;
+        const double reach = std::min(radius, static_cast<double>(hierarchy_.largest_radius));
+        const bool fits = fits_point(inside, reach, nearest);
+        // Where nothing below is small enough from anywhere, either, there is nothing left to decide.
+        const bool full = inside && fits && (view_.two_sided || surfels <= kHardlyAway) &&
+                          static_cast<double>(node.finest) > longest_ * (view_.orthographic ? 1 : depth + radius);
+        if (!full && detail.child_count != 0) return Step::kDescend;
+        cut.statistics.surfels += surfels;
+        append(cut, {node.first_surfel, surfels, false, fits, 0});
+        return Step::kEnd;
     }
 
     std::uint32_t patch_of(std::uint32_t node) const {
@@ -164,38 +124,65 @@ class Rules {
     const PointHierarchy& hierarchy() const { return hierarchy_; }
 
   private:
+    bool outside(const glm::dvec3& centre, double depth, double radius, bool& inside) const {
+        const double slack = slack_ * (view_.orthographic ? 1 : std::max(depth + radius, 0.0));
+        double farthest = near_ - depth;
+        if (farthest > radius) return true;
+        for (const glm::dvec4& side : sides_) {
+            const double beyond = glm::dot(glm::dvec3(side), centre) + side.w;
+            if (beyond > radius + slack) return true;
+            farthest = std::max(farthest, beyond);
+        }
+        inside = farthest < -radius;
+        return false;
+    }
+
     // beta + theta + alpha < 90 degrees (figure 11 b), and some for what shaders draw beyond the horizon: with L what
     // the cone leaves of that, alpha < L and cos beta > cos(L - alpha), times the distance.
-    void faces_away(std::uint32_t first, const Lanes<float>& distance2, Lanes<std::uint8_t>& away) const {
-        const PointHierarchy& h = hierarchy_;
-        const auto at = [&](const std::vector<float>& array) { return array.data() + first; };
-        const float *const x = at(h.x), *const y = at(h.y), *const z = at(h.z), *const radius = at(h.radius),
-                           *const nx = at(h.nx), *const ny = at(h.ny), *const nz = at(h.nz),
-                           *const cosine = at(h.left_cosine), *const sine = at(h.left_sine);
-        if (view_.orthographic) {
-            for (std::size_t i = 0; i < kHierarchyLanes; ++i)
-                away[i] = static_cast<std::uint8_t>(nx[i] * depth_.x + ny[i] * depth_.y + nz[i] * depth_.z > cosine[i]);
-            return;
+    bool faces_away(const CutNodeDetail& node, const glm::dvec3& from_eye, double distance2, double radius) const {
+        static const std::array<Limit, kConeSteps + 1> limits = cone_limits();
+        const Limit& limit = limits[node.cone_angle];
+        const glm::dvec3 normal(node.normal[0], node.normal[1], node.normal[2]);
+        if (view_.orthographic) return glm::dot(normal, glm::dvec3(depth_)) > limit.cosine;
+        const double radius2 = radius * radius;
+        if (limit.sine * limit.sine * distance2 <= radius2) return false;
+        const double beyond = glm::dot(normal, from_eye) - limit.sine * radius;
+        return beyond > 0 && beyond * beyond > limit.cosine * limit.cosine * (distance2 - radius2);
+    }
+
+    // Whether a length takes at most tau pixels wherever around the node it is. A unit takes that many times
+    // distance / nearest^2 there, the norm of the projection's derivative, which is largest across the picture's
+    // middle.
+    bool small_enough(double extent, double nearest, double distance2) const {
+        if (view_.orthographic) return extent <= longest_;
+        const double most = longest_ * nearest * nearest;
+        return nearest > near_ && extent * extent * distance2 <= most * most;
+    }
+
+    bool fits_point(bool inside, double radius, double nearest) const {
+        return inside && radius <= largest_point_ * (view_.orthographic ? 1 : nearest);
+    }
+
+    static void append(LodCut& cut, const CutRun& run) {
+        if (!cut.runs.empty()) {
+            CutRun& last = cut.runs.back();
+            if (last.inner == run.inner && last.fits_point == run.fits_point && last.level == run.level &&
+                last.first + last.count == run.first) {
+                last.count += run.count;
+                return;
+            }
         }
-        for (std::size_t i = 0; i < kHierarchyLanes; ++i) {
-            const float along = nx[i] * (x[i] - eye_.x) + ny[i] * (y[i] - eye_.y) + nz[i] * (z[i] - eye_.z);
-            const float radius2 = radius[i] * radius[i];
-            const float behind = along - sine[i] * radius[i];
-            away[i] = static_cast<std::uint8_t>((sine[i] * sine[i] * distance2[i] > radius2) & (behind > 0) &
-                                                (behind * behind > cosine[i] * cosine[i] * (distance2[i] - radius2)));
-        }
+        cut.runs.push_back(run);
     }
 
     const PointHierarchy& hierarchy_;
     const CutView& view_;
-    Plane depth_;                 // unit-box units
-    std::array<Plane, 4> sides_;  // of what is beyond a side of the frustum
-    Plane eye_;
-    float near_, slack_;
-    float rounding_;
-    float longest_;        // half axis that takes tau pixels at depth 1, or anywhere
-    float largest_point_;  // radius of a disk that fits the largest point there
-    float perspective_;    // 1, or 0 of parallel rays
+    glm::dvec4 depth_;                 // of a point: dot(xyz, p) + w, unit-box units
+    std::array<glm::dvec4, 4> sides_;  // the same of what it is beyond a side of the frustum
+    glm::dvec3 eye_;
+    double near_, slack_;
+    double longest_;        // half axis that takes tau pixels at depth 1, or anywhere
+    double largest_point_;  // radius of a disk that fits the largest point there
 };
 
 // One subtree, depth first.
@@ -205,26 +192,28 @@ class Walk {
 
     void run(const Visit& root) { run(root, std::numeric_limits<double>::infinity()); }
 
-  private:
     // Triangles or surfels for the patch of a node.
-    void choose(Visit visit) {
+    void choose(const Visit& visit) {
         const std::uint32_t patch = rules_.patch_of(visit.node);
         const double cost = rules_.triangle_cost(patch);
         const CutStatistics before = cut_.statistics;
         const std::size_t runs = cut_.runs.size();
         const CutRun last = runs == 0 ? CutRun{} : cut_.runs.back();
-        visit.choose = false;
         // Surfels would be one at least.
-        if (cost >= 1 && run(visit, elements(before) + cost)) return;
-        const std::uint64_t visited = cut_.statistics.visited;
-        cut_.runs.resize(runs);
-        if (runs != 0) cut_.runs.back() = last;
-        cut_.statistics = before;
+        const bool within = cost >= 1 && run({visit.node, visit.level, visit.inside, true}, elements(before) + cost);
+        // The patch itself was visited twice.
+        const std::uint64_t visited = cut_.statistics.visited - (cost >= 1 ? 1 : 0);
+        if (!within) {
+            cut_.runs.resize(runs);
+            if (runs != 0) cut_.runs.back() = last;
+            cut_.statistics = before;
+            cut_.triangle_patches.push_back(patch);
+            ++cut_.statistics.patches_by_triangles;
+        }
         cut_.statistics.visited = visited;
-        ++cut_.statistics.patches_by_triangles;
-        cut_.triangle_patches.push_back(patch);
     }
 
+  private:
     static double elements(const CutStatistics& counts) {
         return static_cast<double>(counts.ellipses + counts.surfels);
     }
@@ -233,53 +222,23 @@ class Walk {
     bool run(const Visit& root, double most) {
         const std::size_t base = stack_.size();
         stack_.push_back(root);
-        Lanes<Visit> children;
         while (stack_.size() > base) {
             const Visit visit = stack_.back();
             stack_.pop_back();
-            if (visit.choose) {
-                choose(visit);
-                continue;
-            }
-            if (visit.step == Step::kDescend) {
-                for (std::size_t i =
-                         rules_.decide(rules_.hierarchy().first_child[visit.node],
-                                       rules_.hierarchy().child_count(visit.node), visit, children, cut_.statistics);
-                     i-- > 0;)
-                    stack_.push_back(children[i]);
-                continue;
-            }
-            draw(visit);
-            if (elements(cut_.statistics) > most) {
+            bool inside = false;
+            const Rules::Step step = rules_.decide(visit, inside, cut_);
+            if (step == Rules::Step::kChoose) {
+                choose({visit.node, visit.level, inside});
+            } else if (step == Rules::Step::kDescend) {
+                const std::uint32_t first = rules_.hierarchy().nodes[visit.node].first_child;
+                for (std::uint32_t child = rules_.hierarchy().details[visit.node].child_count; child-- > 0;)
+                    stack_.push_back({first + child, visit.level + 1, inside, visit.chosen});
+            } else if (elements(cut_.statistics) > most) {
                 stack_.resize(base);
                 return false;
             }
         }
         return true;
-    }
-
-    void draw(const Visit& visit) {
-        const std::uint32_t first = rules_.hierarchy().first_surfel[visit.node], surfels = visit.surfel_end - first;
-        if (visit.step == Step::kEllipse) {
-            ++cut_.statistics.ellipses;
-            cut_.statistics.merged_surfels += surfels;
-            append({visit.node, 1, true, visit.fits, visit.level});
-        } else {
-            cut_.statistics.surfels += surfels;
-            append({first, surfels, false, visit.fits, 0});
-        }
-    }
-
-    void append(const CutRun& run) {
-        if (!cut_.runs.empty()) {
-            CutRun& last = cut_.runs.back();
-            if (last.inner == run.inner && last.fits_point == run.fits_point && last.level == run.level &&
-                last.first + last.count == run.first) {
-                last.count += run.count;
-                return;
-            }
-        }
-        cut_.runs.push_back(run);
     }
 
     const Rules& rules_;
@@ -300,39 +259,95 @@ CutStatistics& CutStatistics::operator+=(const CutStatistics& other) {
     return *this;
 }
 
+float extent_of(const format::PointNode& node) {
+    return std::max(node.major, node.sphere_radius);
+}
+
+PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
+                               float largest_radius) {
+    PointHierarchy hierarchy;
+    hierarchy.largest_radius = largest_radius;
+    hierarchy.nodes.resize(nodes.size());
+    hierarchy.details.resize(nodes.size());
+    hierarchy.surfel_counts.resize(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const format::PointNode& node = nodes[i];
+        const float extent = node.surfel_count > 1 ? extent_of(node) : std::numeric_limits<float>::infinity();
+        float finest = extent;
+        for (std::uint32_t child = 0; child < node.child_count; ++child)
+            finest = std::min(finest, hierarchy.nodes[node.first_child + child].finest);
+        hierarchy.nodes[i] = {{node.position[0], node.position[1], node.position[2]},
+                              node.sphere_radius,
+                              extent,
+                              finest,
+                              node.first_child,
+                              node.first_surfel};
+        const std::array<float, 3> normal = decode_octahedral(node.normal);
+        hierarchy.details[i] = {{normal[0], normal[1], normal[2]}, node.cone_angle, node.child_count, false, 0};
+        hierarchy.surfel_counts[i] = node.surfel_count;
+    }
+    // Breadth first, so that of nodes with the same surfels the uppermost is found.
+    std::vector<bool> found(patches.size(), false);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto next = std::upper_bound(
+            patches.begin(), patches.end(), nodes[i].first_surfel,
+            [](std::uint64_t surfel, const format::Patch& p) { return surfel < p.first_surfel + p.surfel_count; });
+        if (next == patches.end() || next->first_surfel != nodes[i].first_surfel ||
+            next->surfel_count != nodes[i].surfel_count)
+            continue;
+        const auto patch = static_cast<std::size_t>(next - patches.begin());
+        if (!found[patch]) {
+            hierarchy.patches.emplace_back(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(patch));
+            hierarchy.details[i].is_patch = true;
+        }
+        found[patch] = true;
+    }
+    return hierarchy;
+}
+
 LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view) {
     LodCut cut;
     if (hierarchy.empty()) return cut;
     const Rules rules(hierarchy, view);
-    const Visit above{0, hierarchy.surfel_counts[0], 0, Step::kDescend, false, false, false};
-    Lanes<Visit> decided;
-    std::vector<Visit> visits(decided.begin(), decided.begin() + static_cast<std::ptrdiff_t>(rules.decide(
-                                                                     0, 1, above, decided, cut.statistics)));
-    // From above, until there are subtrees enough, in order.
-    for (int round = 0; round < kMostRounds && visits.size() < kTasks; ++round) {
-        std::vector<Visit> next;
-        for (const Visit& visit : visits) {
-            if (visit.choose || visit.step != Step::kDescend) {
-                next.push_back(visit);
+    // What is decided and what is not yet, in order: cuts, each with the visit that comes after it.
+    struct Task {
+        LodCut before;
+        Visit visit{};
+        bool pending = false;
+    };
+    std::vector<Task> tasks(1);
+    tasks.front() = {{}, {0, 1, false}, true};
+    for (int round = 0; round < kMostRounds && tasks.size() < kTasks; ++round) {
+        std::vector<Task> next;
+        for (Task& task : tasks) {
+            if (!task.pending) {
+                next.push_back(std::move(task));
                 continue;
             }
-            const std::size_t kept = rules.decide(hierarchy.first_child[visit.node], hierarchy.child_count(visit.node),
-                                                  visit, decided, cut.statistics);
-            next.insert(next.end(), decided.begin(), decided.begin() + static_cast<std::ptrdiff_t>(kept));
+            bool inside = false;
+            const Rules::Step step = rules.decide(task.visit, inside, task.before);
+            if (step == Rules::Step::kChoose)
+                Walk(rules, task.before).choose({task.visit.node, task.visit.level, inside});
+            next.push_back({std::move(task.before), {}, false});
+            if (step != Rules::Step::kDescend) continue;
+            const std::uint32_t first = hierarchy.nodes[task.visit.node].first_child;
+            for (std::uint32_t child = 0; child < hierarchy.details[task.visit.node].child_count; ++child)
+                next.push_back({{}, {first + child, task.visit.level + 1, inside}, true});
         }
-        visits = std::move(next);
+        tasks = std::move(next);
     }
-    std::vector<LodCut> parts(visits.size());
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) { Walk(rules, parts[i]).run(visits[i]); });
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
+        if (tasks[i].pending) Walk(rules, tasks[i].before).run(tasks[i].visit);
+    });
     std::size_t runs = 0;
-    for (const LodCut& part : parts)
-        runs += part.runs.size();
+    for (const Task& task : tasks)
+        runs += task.before.runs.size();
     cut.runs.reserve(runs);
-    for (const LodCut& part : parts) {
-        cut.runs.insert(cut.runs.end(), part.runs.begin(), part.runs.end());
-        cut.triangle_patches.insert(cut.triangle_patches.end(), part.triangle_patches.begin(),
-                                    part.triangle_patches.end());
-        cut.statistics += part.statistics;
+    for (const Task& task : tasks) {
+        cut.runs.insert(cut.runs.end(), task.before.runs.begin(), task.before.runs.end());
+        cut.triangle_patches.insert(cut.triangle_patches.end(), task.before.triangle_patches.begin(),
+                                    task.before.triangle_patches.end());
+        cut.statistics += task.before.statistics;
     }
     return cut;
 }

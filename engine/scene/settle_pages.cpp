@@ -61,11 +61,11 @@ class Settler {
                 runs.push_back(run);
                 continue;
             }
-            const auto& first_surfel = model_->hierarchy().first_surfel;
+            const auto& nodes = model_->hierarchy().nodes;
             auto leaf = std::ranges::lower_bound(model_->leaves(), run.first, {},
-                                                 [&](const TreeLeaf& each) { return first_surfel[each.node]; });
+                                                 [&](const TreeLeaf& each) { return nodes[each.node].first_surfel; });
             for (; leaf != model_->leaves().end(); ++leaf) {
-                const std::uint32_t first = first_surfel[leaf->node];
+                const std::uint32_t first = nodes[leaf->node].first_surfel;
                 const std::uint32_t count = model_->hierarchy().surfel_counts[leaf->node];
                 if (first >= run.first + run.count) break;
                 if (!is_there(first, count)) {

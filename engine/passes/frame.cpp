@@ -67,12 +67,14 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
 
     if (is_deferred(settings)) targets.normals = image("normals", passes.formats.accumulation);
 
-    passes.triangle.add(graph, targets, settings, draws);
-    if (backend.techniques && (draws.surfels > 0 || backend.techniques->others == Technique::kTile)) {
-        const std::optional<SurfelOwnership> ownership =
-            passes.splats.add(graph, bindings, targets, settings, background, draws, *backend.techniques);
-        if (ownership) passes.surfel_normalise.add(graph, targets, settings, background, *ownership);
-    } else {
+    if (backend.techniques) passes.splats.plan(draws, *backend.techniques);
+    const bool composed = backend.techniques && passes.splats.composes(settings);
+    passes.triangle.add(graph, targets, settings, draws,
+                        composed ? std::optional(empty_picture(settings.view, background)) : std::nullopt);
+    if (backend.techniques && draws.surfels > 0) {
+        const SurfelOwnership ownership = passes.splats.add(graph, bindings, targets, settings);
+        if (!composed) passes.surfel_normalise.add(graph, targets, settings, background, ownership);
+    } else if (!composed) {
         passes.surfel_visibility.add(graph, targets, settings, draws);
         passes.surfel_attribute.add(graph, targets, settings, draws);
         passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kStencil);

@@ -10,7 +10,7 @@
 namespace splice {
 
 struct FrameTargets {
-    graph::ImageHandle triangle_colour;  // linear; alpha is coverage
+    graph::ImageHandle triangle_colour;  // linear; alpha is coverage; unless triangles are drawn to the picture
     graph::ImageHandle depth;            // reversed; stencil 1 where surfels own the pixel
     graph::ImageHandle accumulation;     // (w rgb, w); deferred: albedos
     graph::ImageHandle normals;          // deferred: (w n, w z), view space, z as the depth buffer encodes it

@@ -74,9 +74,8 @@ struct TileUniforms {
     std::uint32_t segmented;
     std::uint32_t first_solid;
     std::uint32_t first_listed;
-    std::uint32_t padding[1];
-    glm::vec4 background;
+    std::uint32_t padding[1];  // std140 rounds the block up to 16 bytes
 };
-static_assert(sizeof(TileUniforms) == 48);
+static_assert(sizeof(TileUniforms) == 32);
 
 }  // namespace splice

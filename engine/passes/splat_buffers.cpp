@@ -1,7 +1,5 @@
 #include "engine/passes/splat_buffers.h"
 
-#include <glm/gtc/type_ptr.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -50,8 +48,7 @@ std::uint64_t SplatBuffers::most_groups(std::uint64_t most) const {
     return most == 0 ? all : std::min(most, all);
 }
 
-void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented,
-                           const VkClearValue& background) {
+void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented) {
     const std::uint64_t groups = std::max<std::uint64_t>(room.groups, 1);
     const std::uint64_t words = std::max<std::uint64_t>(divided_up(room.tiled, 32), 1);
     std::uint32_t shift = kSmallestCellShift;
@@ -66,8 +63,7 @@ void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room,
                .segmented = segmented ? 1u : 0u,
                .first_solid = static_cast<std::uint32_t>(groups * kTileGroup * kTileRecordTexels),
                .first_listed = static_cast<std::uint32_t>(kListGroups / kWordBytes + groups),
-               .padding = {},
-               .background = glm::make_vec4(background.color.float32)};
+               .padding = {}};
     std::memcpy(uniforms_.mapped().data(), &values_, sizeof values_);
 
     constexpr VkBufferUsageFlags written = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
@@ -88,7 +84,7 @@ void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room,
     grow_texels(masks_, mask_view_, "tile masks", cells() * words * kWordBytes, VK_FORMAT_R32_UINT, storage | read);
     grow_texels(list_, list_view_, "splat list", kListGroups + (groups + room.listed * kTileGroup) * kWordBytes,
                 VK_FORMAT_R32_UINT, storage | read | indirect);
-    grown = grow(cells_, "tile cells", kTileCellList + 2 * cells() * kWordBytes, storage | indirect) || grown;
+    grown = grow(cells_, "tile cells", kTileCellList + (1 + kTileCellLists) * cells() * kWordBytes, storage | indirect) || grown;
     if (!grown) return;
     pool_.reset();
     set_ = pool_.allocate(layout_);
@@ -128,8 +124,8 @@ SplatHandles SplatBuffers::import(graph::Graph& graph, graph::Bindings& bindings
 void SplatBuffers::clear_tiles(VkCommandBuffer commands) const {
     const std::uint64_t tiles =
         (std::uint64_t{1} << 2 * values_.cell_shift) / (std::uint64_t{kTileWidth} * kTileHeight);
-    const std::array<std::uint32_t, 8> dispatches{static_cast<std::uint32_t>(tiles), 0, 1, 0,
-                                                  static_cast<std::uint32_t>(tiles), 0, 1, 0};
+    std::array<std::array<std::uint32_t, 4>, kTileCellLists> dispatches;
+    dispatches.fill({static_cast<std::uint32_t>(tiles), 0, 1, 0});
     static_assert(sizeof dispatches == kTileCellList);
     vkCmdFillBuffer(commands, masks_.handle(), 0, std::uint64_t{cells()} * values_.words * kWordBytes, 0);
     vkCmdUpdateBuffer(commands, cells_.handle(), 0, sizeof dispatches, dispatches.data());

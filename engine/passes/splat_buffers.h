@@ -20,6 +20,10 @@ inline constexpr std::uint32_t kTileSegmentWords = 24, kTileFusedGroups = 416;
 /// local_size_x of tile_cells.comp.
 inline constexpr std::uint32_t kTileCellsGroup = 64;
 
+/// CELLS_* of tile.glsl: lists of cells, each with a dispatch.
+enum class TileCells : std::uint32_t { kFlat, kSolid, kBoth, kSegmented };
+inline constexpr std::uint32_t kTileCellLists = 4;
+
 /// The buffers of one frame as its graph knows them.
 struct SplatHandles {
     graph::BufferHandle records, blocks, masks, cells, list;
@@ -39,7 +43,7 @@ class SplatBuffers {
     std::uint64_t most_groups(std::uint64_t most) const;
     /// `segmented`: tiles are gathered in segments, whatever their number. No submitted work may still use the frame
     /// before.
-    void prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented, const VkClearValue& background);
+    void prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented);
     SplatHandles import(graph::Graph& graph, graph::Bindings& bindings) const;
     /// Empties masks and cells.
     void clear_tiles(VkCommandBuffer commands) const;
@@ -64,7 +68,10 @@ class SplatBuffers {
 };
 
 /// Offsets in bytes into the cell buffer.
-inline constexpr std::uint64_t kTileFusedDispatch = 0, kTileSegmentedDispatch = 16, kTileCellList = 32;
+constexpr std::uint64_t tile_dispatch(TileCells cells) {
+    return 16 * static_cast<std::uint64_t>(cells);
+}
+inline constexpr std::uint64_t kTileCellList = 16 * kTileCellLists;
 /// And into the list: a VkDrawIndirectCommand, then a number a group.
 inline constexpr std::uint64_t kListDraw = 0, kListGroups = 16;
 

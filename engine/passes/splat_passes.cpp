@@ -52,6 +52,13 @@ void wait_for_compute(VkCommandBuffer commands) {
                          &barrier, 0, nullptr, 0, nullptr);
 }
 
+void clear_image(const graph::PassContext& context, graph::ImageHandle image) {
+    const VkClearColorValue nothing{};
+    const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdClearColorImage(context.commands, context.image(image), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &nothing, 1,
+                         &all);
+}
+
 InstanceConstants range_constants(const GroupRange& range) {
     InstanceConstants constants{};
     constants.first_group = range.first;
@@ -95,8 +102,9 @@ double SplatPasses::default_points_below(Backend wanted) const {
     return wanted == Backend::kAuto && !device_.info().is_cpu() ? kPointPixels : 0;
 }
 
-bool SplatPasses::composes(const FrameSettings& settings) {
-    return !is_numeric(settings.view) && settings.antialias == 1 && !is_deferred(settings);
+// Only tiles can; pictures of numbers and samples, and those that are lit afterwards, they leave alone.
+bool SplatPasses::composes(const FrameSettings& settings) const {
+    return !is_mixed() && !is_numeric(settings.view) && settings.antialias == 1 && !is_deferred(settings);
 }
 
 bool SplatPasses::uses(Technique technique) const {
@@ -104,10 +112,12 @@ bool SplatPasses::uses(Technique technique) const {
                        [&](const SplatBatch& batch) { return batch.range(technique).count > 0; });
 }
 
-std::optional<SurfelOwnership> SplatPasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
-                                                const FrameSettings& settings, const Background& background,
-                                                const DrawList& draws, const Techniques& techniques) {
+void SplatPasses::plan(const DrawList& draws, const Techniques& techniques) {
     batches_ = plan_splats(draws, techniques, buffers_.most_groups(most_groups_));
+}
+
+SurfelOwnership SplatPasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
+                                 const FrameSettings& settings) {
     SplatRoom room;
     for (const SplatBatch& batch : batches_) {
         room.groups = std::max(room.groups, batch.groups);
@@ -115,29 +125,26 @@ std::optional<SurfelOwnership> SplatPasses::add(graph::Graph& graph, graph::Bind
         room.listed = std::max<std::uint64_t>(room.listed, batch.range(Technique::kRaster).count);
     }
     const bool points = uses(Technique::kPoint);
-    const bool mixed = points || uses(Technique::kRaster);
-    buffers_.prepare(settings, room, mixed || batches_.size() > 1, empty_picture(settings.view, background));
+    buffers_.prepare(settings, room, is_mixed() || batches_.size() > 1);
     handles_ = buffers_.import(graph, bindings);
     targets.splat_depth = graph.create_image(
         "splat_depth", {.format = VK_FORMAT_R32_UINT, .width = settings.width, .height = settings.height});
     if (points) point_sums_ = graph.create_buffer("point_sums", {point_bytes(settings)});
-    const bool composed = !mixed && composes(settings);
     programs_.set_targets({.frame = targets,
                            .point_sums = point_sums_,
-                           .tiles = !mixed || uses(Technique::kTile),
-                           .composes = composed,
+                           .composes = composes(settings),
                            .deferred = is_deferred(settings),
                            .points = points});
     summed_ = false;
-    const SurfelOwnership ownership = mixed ? add_mixed(graph, targets, settings) : add_tiles(graph, targets, settings);
-    return composed ? std::nullopt : std::optional(ownership);
+    return is_mixed() ? add_mixed(graph, targets, settings) : add_tiles(graph, targets, settings);
 }
 
 SurfelOwnership SplatPasses::add_tiles(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
-    const Variant variant{.composes = composes(settings)};
+    const Variant variant{.composes = composes(settings), .cells = TileCells::kSegmented};
     if (batches_.size() == 1) {
         const SplatBatch& batch = batches_.front();
         add_setup(graph, settings, batch);
+        if (!composes(settings)) add_sum_clear(graph, targets, settings);
         add_gather(graph, targets, settings);
         // No cell can hold too much for one go unless the frame does.
         if (batch.groups > kTileFusedGroups)
@@ -156,7 +163,7 @@ SurfelOwnership SplatPasses::add_tiles(graph::Graph& graph, FrameTargets& target
 }
 
 SurfelOwnership SplatPasses::add_mixed(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
-    const Variant variant{.mixed = true};
+    const Variant variant{.mixed = true, .cells = TileCells::kSegmented};
     const bool tiles = uses(Technique::kTile), points = uses(Technique::kPoint);
     if (tiles || points) add_point_clear(graph, targets);
     for (const SplatBatch& batch : batches_) {
@@ -197,8 +204,7 @@ SurfelOwnership SplatPasses::add_mixed(graph::Graph& graph, FrameTargets& target
 }
 
 void SplatPasses::add_setup(graph::Graph& graph, const FrameSettings& settings, const SplatBatch& batch) {
-    // Tiles draw the frames that have no surfels, too.
-    const bool tiled = batch.range(Technique::kTile).count > 0 || batch.groups == 0;
+    const bool tiled = batch.range(Technique::kTile).count > 0;
     const bool listed = batch.range(Technique::kRaster).count > 0;
     if (tiled) {
         graph::Pass pass = graph.add_pass("tile_clear", graph::PassKind::transfer);
@@ -249,7 +255,6 @@ void SplatPasses::read_inputs(graph::Pass& pass, const FrameTargets& targets) co
     pass.storage_read(handles_.cells);
     pass.indirect_buffer(handles_.cells);
     pass.sampled(targets.depth);
-    pass.sampled(targets.triangle_colour);
 }
 
 void SplatPasses::write_sums(graph::Pass& pass, FrameTargets& targets, const FrameSettings& settings, bool fresh) {
@@ -260,16 +265,33 @@ void SplatPasses::write_sums(graph::Pass& pass, FrameTargets& targets, const Fra
     if (is_deferred(settings)) write(targets.normals);
 }
 
+void SplatPasses::add_sum_clear(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
+    graph::Pass pass = graph.add_pass("sum_clear", graph::PassKind::transfer);
+    std::vector<graph::ImageHandle> sums;
+    const auto write = [&](graph::ImageHandle& sum) {
+        sum = pass.transfer_write(sum, graph::Contents::discard());
+        sums.push_back(sum);
+    };
+    write(targets.accumulation);
+    if (is_deferred(settings)) write(targets.normals);
+    pass.record([sums = std::move(sums)](const graph::PassContext& context) {
+        for (const graph::ImageHandle sum : sums)
+            clear_image(context, sum);
+    });
+}
+
 void SplatPasses::add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
     graph::Pass pass = graph.add_pass("tile_gather", graph::PassKind::compute);
     read_inputs(pass, targets);
-    write_sums(pass, targets, settings, true);
+    const bool composed = composes(settings);
+    write_sums(pass, targets, settings, composed);
     targets.splat_depth = pass.storage_write(targets.splat_depth, graph::Contents::discard());
-    const Variant variant{.composes = composes(settings)};
-    if (variant.composes) targets.picture = pass.storage_write(targets.picture, graph::Contents::discard());
-    pass.record([this, &settings, variant](const graph::PassContext& context) {
-        programs_.bind(context, Stage::kTileGather, settings, variant);
-        vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileFusedDispatch);
+    if (composed) targets.picture = pass.storage_write(targets.picture, graph::Contents::keep());
+    pass.record([this, &settings, composed](const graph::PassContext& context) {
+        for (const TileCells cells : {TileCells::kFlat, TileCells::kSolid, TileCells::kBoth}) {
+            programs_.bind(context, Stage::kTileGather, settings, {.composes = composed, .cells = cells});
+            vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), tile_dispatch(cells));
+        }
     });
 }
 
@@ -287,9 +309,7 @@ void SplatPasses::add_segments(graph::Graph& graph, FrameTargets& targets, const
         write_sums(pass, targets, settings, fresh);
         targets.splat_depth = fresh ? pass.storage_write(targets.splat_depth, graph::Contents::discard())
                                     : pass.storage_read_write(targets.splat_depth);
-        if (variant.composes)
-            targets.picture =
-                pass.storage_write(targets.picture, fresh ? graph::Contents::discard() : graph::Contents::keep());
+        if (variant.composes) targets.picture = pass.storage_write(targets.picture, graph::Contents::keep());
     }
     pass.record([this, &settings, stages = std::move(stages), place, variant](const graph::PassContext& context) {
         for (const Stage stage : stages)
@@ -304,10 +324,7 @@ void SplatPasses::add_point_clear(graph::Graph& graph, FrameTargets& targets) {
     if (points) point_sums_ = pass.transfer_write(point_sums_, graph::Contents::discard());
     const graph::ImageHandle depth = targets.splat_depth;
     pass.record([this, depth, points](const graph::PassContext& context) {
-        const VkClearColorValue nothing{};
-        const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        vkCmdClearColorImage(context.commands, context.image(depth), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &nothing, 1,
-                             &all);
+        clear_image(context, depth);
         if (points) vkCmdFillBuffer(context.commands, context.buffer(point_sums_), 0, VK_WHOLE_SIZE, 0);
     });
 }
@@ -370,7 +387,7 @@ void SplatPasses::segment(const graph::PassContext& context, const FrameSettings
             (place.last && word + kTileSegmentWords >= buffers_.uniforms().words ? kInstanceLastSegment : 0u);
         programs_.push(context.commands, constants);
         if (waits || word > 0) wait_for_compute(context.commands);
-        vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), kTileSegmentedDispatch);
+        vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), tile_dispatch(TileCells::kSegmented));
     }
 }
 

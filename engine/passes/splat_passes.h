@@ -32,11 +32,15 @@ class SplatPasses {
     /// Pixels: splats up to this size become points unless somebody says otherwise.
     double default_points_below(Backend wanted) const;
 
-    /// What to normalise; none: targets.picture is complete. `draws` and `settings` must live until the graph has been
+    /// What draws which surfels of the frame. `draws` must live until the frame's graph has been executed.
+    void plan(const DrawList& draws, const Techniques& techniques);
+    /// Whether the passes finish the picture themselves, over what targets.picture has of triangles; else the normalise
+    /// pass does.
+    bool composes(const FrameSettings& settings) const;
+    /// Of the frame that was planned; how to normalise it, if at all. `settings` must live until the graph has been
     /// executed. No submitted work may still use the frame before.
-    std::optional<SurfelOwnership> add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
-                                       const FrameSettings& settings, const Background& background,
-                                       const DrawList& draws, const Techniques& techniques);
+    SurfelOwnership add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
+                        const FrameSettings& settings);
 
   private:
     using Stage = SplatPrograms::Stage;
@@ -47,15 +51,15 @@ class SplatPasses {
     };
     enum class Phase { kVisibility, kAttributes };
 
-    /// Whether tiles make the picture themselves; if not, the normalise pass does. Pictures of numbers and samples, and
-    /// those that are lit afterwards, they leave alone.
-    static bool composes(const FrameSettings& settings);
     bool uses(Technique technique) const;
+    bool is_mixed() const { return uses(Technique::kPoint) || uses(Technique::kRaster); }
     SurfelOwnership add_tiles(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
     SurfelOwnership add_mixed(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
 
     void add_setup(graph::Graph& graph, const FrameSettings& settings, const SplatBatch& batch);
     void add_list(graph::Graph& graph, const FrameSettings& settings, const GroupRange& range);
+    /// For tiles without splats, which are not gathered.
+    void add_sum_clear(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
     void add_gather(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
     void add_segments(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
                       std::vector<Stage> stages, Place place, const Variant& variant);

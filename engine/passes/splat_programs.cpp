@@ -28,12 +28,11 @@ SplatPrograms::SplatPrograms(gpu::Device& device, const FrameData& data, const S
       buffers_(buffers),
       surfel_layout_(surfel_set_layout(device)),
       target_layout_(device, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
-                              {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kCompute},
+                              {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
                               {2, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
                               {3, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
                               {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
-                              {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kCompute},
-                              {6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute}}),
+                              {5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCompute}}),
       layout_(device,
               std::array{data.layout().handle(), surfel_layout_.handle(), buffers.layout().handle(),
                          target_layout_.handle()},
@@ -89,6 +88,7 @@ void SplatPrograms::bind(const graph::PassContext& context, Stage stage, const F
         constants[3] = variant.composes ? 1u : 0u;
         constants[4] = variant.mixed ? 1u : 0u;
         constants[5] = is_deferred(settings) ? 1u : 0u;
+        constants[7] = static_cast<std::uint32_t>(variant.cells);
         pipeline = gpu::ComputePipeline(device_, {&program.shader, constants}, layout_.handle(), program.name);
     }
     vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
@@ -122,16 +122,14 @@ VkDescriptorSet SplatPrograms::target_set(const graph::PassContext& context) {
     pool_.reset();  // one frame is in flight, and it is this one
     sets_ = {context.plan_id, pool_.allocate(target_layout_)};
     const FrameTargets& frame = targets_.frame;
-    constexpr VkImageLayout kDepthRead = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
     gpu::DescriptorWriter(sets_.set)
-        .sampled_image(0, context.depth_view(frame.depth), sampler_.get(), kDepthRead)
-        .sampled_image(1, targets_.tiles ? context.view(frame.triangle_colour) : context.depth_view(frame.depth),
-                       sampler_.get(), targets_.tiles ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : kDepthRead)
-        .storage_image(2, context.view(frame.splat_depth))
-        .storage_image(3, context.view(frame.accumulation))
-        .storage_image(4, context.view(targets_.deferred ? frame.normals : frame.accumulation))
-        .storage_image(5, context.view(targets_.composes ? frame.picture : frame.accumulation))
-        .storage_buffer(6, targets_.points ? context.buffer(targets_.point_sums) : buffers_.list().handle())
+        .sampled_image(0, context.depth_view(frame.depth), sampler_.get(),
+                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
+        .storage_image(1, context.view(frame.splat_depth))
+        .storage_image(2, context.view(frame.accumulation))
+        .storage_image(3, context.view(targets_.deferred ? frame.normals : frame.accumulation))
+        .storage_image(4, context.view(targets_.composes ? frame.picture : frame.accumulation))
+        .storage_buffer(5, targets_.points ? context.buffer(targets_.point_sums) : buffers_.list().handle())
         .write(device_);
     return sets_.set;
 }

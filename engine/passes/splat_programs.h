@@ -32,6 +32,7 @@ class SplatPrograms {
         bool composes = false;  // tiles become the picture
         bool mixed = false;     // several techniques serve the frame
         bool adds = false;      // point sums: to what is there
+        TileCells cells = TileCells::kBoth;
         auto operator<=>(const Variant&) const = default;
     };
 
@@ -41,7 +42,7 @@ class SplatPrograms {
     struct Targets {
         FrameTargets frame;
         graph::BufferHandle point_sums;
-        bool tiles = false, composes = false, deferred = false, points = false;
+        bool composes = false, deferred = false, points = false;
     };
     void set_targets(const Targets& targets) { targets_ = targets; }
 

@@ -26,29 +26,30 @@ TrianglePass::TrianglePass(gpu::Device& device, const FrameData& data)
       fragment_(device, triangle_frag, "triangle.frag") {}
 
 void TrianglePass::add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
-                       const DrawList& draws) {
+                       const DrawList& draws, const std::optional<VkClearValue>& picture) {
     const bool wires = settings.view == View::kWireframe;
     if (wires && !device_.features().fill_mode_non_solid)
         throw UsageError("--view wireframe: the device " + device_.info().name + " cannot draw wires");
     graph::Pass pass = graph.add_pass("triangle", graph::PassKind::graphics);
-    targets.triangle_colour =
-        pass.colour_attachment(targets.triangle_colour, graph::Contents::clear(graph::clear_colour(0, 0, 0, 0)));
+    graph::ImageHandle& colour = picture ? targets.picture : targets.triangle_colour;
+    colour = pass.colour_attachment(colour, graph::Contents::clear(picture.value_or(graph::clear_colour(0, 0, 0, 0))));
     targets.depth =
         pass.depth_stencil_attachment(targets.depth, graph::Contents::clear(graph::clear_depth_stencil(0, 0)));
-    pass.record([this, &settings, &draws, wires](const graph::PassContext& context) {
-        draw(context, settings, draws, false);
-        if (wires) draw(context, settings, draws, true);
+    pass.record([this, &settings, &draws, wires, to_picture = picture.has_value()](const graph::PassContext& context) {
+        draw(context, settings, draws, to_picture, false);
+        if (wires) draw(context, settings, draws, to_picture, true);
     });
 }
 
 void TrianglePass::draw(const graph::PassContext& context, const FrameSettings& settings, const DrawList& draws,
-                        bool wires) {
+                        bool to_picture, bool wires) {
     const VkCommandBuffer commands = context.commands;
     for (const InstanceDraws& instance : draws.instances) {
         if (instance.triangles.empty()) continue;
-        graph::PassPipelines& pipelines = pipelines_[{frame_variant(settings), wires, instance.two_sided}];
+        const Variant variant{.wires = wires, .two_sided = instance.two_sided, .to_picture = to_picture};
+        graph::PassPipelines& pipelines = pipelines_[{frame_variant(settings), variant}];
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.get(device_, context, [&] {
-            return pipeline_options(settings, wires, instance.two_sided);
+            return pipeline_options(settings, variant);
         }));
         const VkDescriptorSet frame_set = data_.set();
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0, 1, &frame_set, 0,
@@ -74,13 +75,14 @@ void TrianglePass::draw(const graph::PassContext& context, const FrameSettings& 
     }
 }
 
-gpu::GraphicsPipelineOptions TrianglePass::pipeline_options(const FrameSettings& settings, bool wires,
-                                                            bool two_sided) const {
+gpu::GraphicsPipelineOptions TrianglePass::pipeline_options(const FrameSettings& settings,
+                                                            const Variant& variant) const {
     gpu::GraphicsPipelineOptions options;
-    options.name = wires ? "triangle wires" : "triangle";
+    options.name = variant.wires ? "triangle wires" : "triangle";
     options.vertex = {&vertex_, frame_constants(settings)};
     options.fragment = {&fragment_, frame_constants(settings)};
-    options.fragment.constants[0] = wires ? 1u : 0u;
+    options.fragment.constants[0] = variant.wires ? 1u : 0u;
+    options.fragment.constants[3] = variant.to_picture ? 1u : 0u;
     options.layout = layout_.handle();
     options.vertex_bindings = {{0, sizeof(format::Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};
     options.vertex_attributes = {
@@ -89,13 +91,13 @@ gpu::GraphicsPipelineOptions TrianglePass::pipeline_options(const FrameSettings&
         {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(format::Vertex, colour)},
         {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(format::Vertex, uv)},
     };
-    options.cull_mode = two_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT;
+    options.cull_mode = variant.two_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT;
     options.front_face = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     options.depth_test = true;
     options.depth_write = true;
     options.depth_compare = VK_COMPARE_OP_GREATER;
     options.blends = {gpu::Blend::replace()};
-    if (wires) {
+    if (variant.wires) {
         options.polygon_mode = VK_POLYGON_MODE_LINE;
         options.depth_bias_constant = kWireBias;
         options.depth_bias_slope = kWireSlopeBias;

@@ -182,11 +182,13 @@ void main() {
     if ((instance.flags & INSTANCE_TILED) == 0 || group_bounds.low.x >= group_bounds.high.x) return;
     const uvec2 first_cell = group_bounds.low >> tiles.cell_shift;
     const uvec2 touched = ((group_bounds.high - 1) >> tiles.cell_shift) + 1 - first_cell;
+    const uint marks = solid ? CELL_HAS_SOLID : CELL_HAS_FLAT;
     uint i = lane;
     if (i < touched.x * touched.y) do {
             const uint cell = (first_cell.y + i / touched.x) * tiles.cells_x + first_cell.x + i % touched.x;
             atomicOr(masks[cell * tiles.words + group / 32], 1u << group % 32);
             atomicAdd(cells[cell], 1);
+            atomicOr(cells[cell], marks);
             i += gl_WorkGroupSize.x;
         } while (i < touched.x * touched.y);
 }

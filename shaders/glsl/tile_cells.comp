@@ -1,5 +1,4 @@
-// Tile backend: sorts the cells into those gathered at once and those gathered in segments. Their order does not
-// matter: cells have no pixel in common.
+// Tile backend: sorts the cells that hold splats into lists. Their order does not matter: cells have no pixel in common.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -11,9 +10,11 @@ void main() {
     const uint cell = gl_GlobalInvocationID.x, count = cell_count();
     if (cell >= count) return;
     const uint place = cell % tiles.cells_x | cell / tiles.cells_x << 16;
-    if (tiles.segmented == 0 && cells[cell] <= FUSED_GROUPS) {
-        cells[count + atomicAdd(fused_dispatch.y, 1)] = place;
-    } else {
-        cells[2 * count - 1 - atomicAdd(segmented_dispatch.y, 1)] = place;
-    }
+    const uint marks = cells[cell];
+    // In a frame of several batches a cell may have had splats before, or may have some yet.
+    if (marks == 0 && tiles.segmented == 0) return;
+    uint kind = CELLS_SEGMENTED;
+    if (tiles.segmented == 0 && groups_of_cell(cell) <= FUSED_GROUPS)
+        kind = (marks & CELL_HAS_SOLID) == 0 ? CELLS_FLAT : ((marks & CELL_HAS_FLAT) == 0 ? CELLS_SOLID : CELLS_BOTH);
+    cells[(1 + kind) * count + atomicAdd(dispatch[kind].y, 1)] = place;
 }

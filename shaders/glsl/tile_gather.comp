@@ -33,11 +33,14 @@ const uint PART_ALL = 0;
 const uint PART_VISIBILITY = 1;
 const uint PART_ATTRIBUTES = 2;
 
+// Which of CELLS_* the cell is of.
+layout(constant_id = 7) const uint CELLS = CELLS_BOTH;
+
 // Whether other backends draw splats of the same frame: visibility begins with what they found visible, and when it
 // comes to attributes, the frame's depth is that of all.
 layout(constant_id = 4) const bool MIXED = false;
 
-// Whether tiles become the picture; else sums, for the normalise pass.
+// Whether tiles become the picture, which has the triangles already; else sums, for the normalise pass.
 layout(constant_id = 3) const bool COMPOSE = false;
 
 layout(set = 2, binding = 4) uniform usamplerBuffer record_texels;
@@ -456,8 +459,7 @@ void paint(const bool solids, uint blocks, inout Tile tile) {
 }
 
 void main() {
-    const uint place =
-        cells[PART == PART_ALL ? cell_count() + gl_WorkGroupID.y : 2 * cell_count() - 1 - gl_WorkGroupID.y];
+    const uint place = cells[(1 + CELLS) * cell_count() + gl_WorkGroupID.y];
     const uint across_shift = tiles.cell_shift - findMSB(TILE.x);
     Tile tile;
     tile.corner = (uvec2(place & 0xffff, place >> 16) << tiles.cell_shift) +
@@ -484,16 +486,16 @@ void main() {
     const uint cell = (place >> 16) * tiles.cells_x + (place & 0xffff);
     const uint first_word = PART == PART_ALL ? 0 : instance.first_word;
     const uint last_word = PART == PART_ALL ? tiles.words : min(first_word + SEGMENT_WORDS, tiles.words);
-    const uint end_word = cells[cell] == 0 ? first_word : last_word;
+    const uint end_word = groups_of_cell(cell) == 0 ? first_word : last_word;
     const Found found = find_blocks(cell, first_word, end_word, tile.corner);
     if (PART != PART_ATTRIBUTES) {
-        see(false, found.flat_blocks, tile);
-        see(true, found.solid_blocks, tile);
+        if (CELLS != CELLS_SOLID) see(false, found.flat_blocks, tile);
+        if (CELLS != CELLS_FLAT) see(true, found.solid_blocks, tile);
     }
     if (PART != PART_VISIBILITY) {
         own(tile);
-        paint(false, found.flat_blocks, tile);
-        paint(true, found.solid_blocks, tile);
+        if (CELLS != CELLS_SOLID) paint(false, found.flat_blocks, tile);
+        if (CELLS != CELLS_FLAT) paint(true, found.solid_blocks, tile);
     }
     const bool ends = PART == PART_ALL || (instance.flags & INSTANCE_LAST_SEGMENT) != 0;
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {
@@ -504,11 +506,7 @@ void main() {
             imageStore(accumulation, pixel, tile.owned[row] ? tile.sum[row] : vec4(0));
             if (DEFERRED) imageStore(normals, pixel, tile.normal_sum[row]);
         }
-        if (COMPOSE && PART != PART_VISIBILITY) {
-            const vec4 triangles = texelFetch(triangle_colour, min(pixel, ivec2(frame.viewport) - 1), 0);
-            const bool surfels = tile.owned[row] && tile.sum[row].a > 0;
-            const vec4 colour = composed(triangles, surfels, tile.sum[row], false);
-            if (ends) imageStore(picture, pixel, surfels || triangles.a > 0 ? colour : tiles.background);
-        }
+        if (COMPOSE && PART != PART_VISIBILITY && ends && tile.owned[row] && tile.sum[row].a > 0)
+            imageStore(picture, pixel, composed(vec4(0), true, tile.sum[row], false));
     }
 }

@@ -183,7 +183,7 @@ TEST_CASE("tile uniforms have the layout that the shaders declare") {
                       {sizeof(TileUniforms),
                        {MEMBER(TileUniforms, cells_x), MEMBER(TileUniforms, cells_y), MEMBER(TileUniforms, cell_shift),
                         MEMBER(TileUniforms, words), MEMBER(TileUniforms, segmented), MEMBER(TileUniforms, first_solid),
-                        MEMBER(TileUniforms, first_listed), MEMBER(TileUniforms, background)}},
+                        MEMBER(TileUniforms, first_listed)}},
                       2);
 }
 

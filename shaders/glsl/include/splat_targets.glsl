@@ -6,12 +6,11 @@
 layout(constant_id = 5) const bool DEFERRED = false;
 
 layout(set = 3, binding = 0) uniform sampler2D scene_depth;
-layout(set = 3, binding = 1) uniform sampler2D triangle_colour;
-layout(set = 3, binding = 2, r32ui) uniform uimage2D splat_depth;  // bits of depth buffer values
-layout(set = 3, binding = 3, rgba32f) uniform image2D accumulation;
-layout(set = 3, binding = 4, rgba32f) uniform image2D normals;
-layout(set = 3, binding = 5, rgba8) uniform writeonly image2D picture;
-layout(set = 3, binding = 6, std430) buffer PointSums {
+layout(set = 3, binding = 1, r32ui) uniform uimage2D splat_depth;  // bits of depth buffer values
+layout(set = 3, binding = 2, rgba32f) uniform image2D accumulation;
+layout(set = 3, binding = 3, rgba32f) uniform image2D normals;
+layout(set = 3, binding = 4, rgba8) uniform writeonly image2D picture;
+layout(set = 3, binding = 5, std430) buffer PointSums {
     uint point_sums[];  // [y][x][channel]: 64 bits, the lower half first; in units of 2^-32
 };
 

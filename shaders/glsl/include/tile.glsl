@@ -9,6 +9,10 @@
 // first. There is no list that could be too short. Some drivers (llvmpipe) end every loop of an invocation once all its
 // loops have run 65,535 times, so no invocation may run more often: a tile whose cell holds more than FUSED_GROUPS is
 // gathered in segments. Texel buffers, not storage buffers, because software devices read those lane by lane.
+//
+// Such devices also run both sides of a branch, and the body of a loop at least once, whether an invocation is there or
+// not. So what may have nothing to do is a dispatch of its own: tiles of flat splats, of solids, of both; none
+// where there are no splats.
 // Needs frame.glsl.
 #ifndef SPLICE_TILE_GLSL
 #define SPLICE_TILE_GLSL
@@ -29,7 +33,6 @@ layout(set = 2, binding = 0, std140) uniform TileUniforms {
     uint segmented;   // 1: no cell is gathered at once
     uint first_solid;  // texel of the records
     uint first_listed; // texel of the list
-    vec4 background;  // what the picture holds where nothing is
 }
 tiles;
 
@@ -37,10 +40,17 @@ layout(set = 2, binding = 3, std430) buffer TileMasks {
     uint masks[];
 };  // [cell][word]
 layout(set = 2, binding = 5, std430) buffer TileCells {
-    uvec4 fused_dispatch, segmented_dispatch;  // workgroups: tiles of a cell, cells, 1
-    uint cells[];  // groups of each; then, as many again: where those gathered at once are (x, y: 16 bits
-                   // each), and from the end those in segments
+    uvec4 dispatch[4];  // workgroups: tiles of a cell, cells, 1; by CELLS_*
+    uint cells[];  // groups of each, with marks; then, as many again for each of CELLS_*, where they are (x, y: 16 bits
+                   // each)
 };
+// Lists of cells: gathered at once, those that hold splats of disks alone, of solids alone, of both; in segments.
+const uint CELLS_FLAT = 0;
+const uint CELLS_SOLID = 1;
+const uint CELLS_BOTH = 2;
+const uint CELLS_SEGMENTED = 3;
+const uint CELL_HAS_FLAT = 1 << 30, CELL_HAS_SOLID = 1 << 31;
+uint groups_of_cell(uint cell) { return cells[cell] & ~(CELL_HAS_FLAT | CELL_HAS_SOLID); }
 
 // Splats to be rasterised, in the order of their surfels.
 layout(set = 2, binding = 8, std430) buffer SplatList {

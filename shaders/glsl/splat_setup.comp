@@ -50,9 +50,15 @@ bool may_show(uint index) {
     return !(any(greaterThan(outside, vec2(reach))) || depth + reach < frame.near_plane || away);
 }
 
+// Marks of a solid or a cut disk; 0: the surfel is a flat disk.
+uint solid_marks(SurfelRecord record) {
+    if (VIEW == VIEW_SAMPLES) return 0;
+    return (record.extent & MARK_SWELL) | (!is_ellipse(record) && record.clip >> 6 != 0 ? MARK_CUT : 0);
+}
+
 struct PixelBounds {
     uvec2 low, high;
-    bool solid;
+    bool solid, close;
 };
 
 // Whose pixel centres a splat may reach; none where it is outside.
@@ -63,12 +69,12 @@ PixelBounds bounds_of(Splat splat, out vec2 reach) {
     const float slack = 0.51;
     const vec2 first = clamp(ceil(low - slack), vec2(0), frame.viewport);
     const vec2 beyond = clamp(floor(high + slack), vec2(0), frame.viewport);
-    return PixelBounds(uvec2(first), uvec2(beyond), false);
+    return PixelBounds(uvec2(first), uvec2(beyond), false, false);
 }
 
 // What one invocation records at `place`; a place without a splat reaches nothing.
 PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
-    PixelBounds bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
+    PixelBounds bounds = PixelBounds(uvec2(0xffff), uvec2(0), false, false);
     uvec4 reaches = pack_place(vec2(0), vec2(-1e4), 0);
     const int texel = int(place * RECORD_TEXELS);
     if (takes_part) {
@@ -93,12 +99,15 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
             // Rounded up, so that nothing on the disk is beyond it.
             const float rise = splat.rise * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth) * (1 + 1.0 / 512) + 1e-7;
-            uint marks = VIEW == VIEW_SAMPLES ? 0 : record.extent & MARK_SWELL;
-            marks |= is_sub_pixel(splat) ? MARK_SPECK : 0;
-            marks |=
-                splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane ? MARK_NEAR : 0;
-            marks |= VIEW != VIEW_SAMPLES && !is_ellipse(record) && record.clip >> 6 != 0 ? MARK_CUT : 0;
-            bounds.solid = marks != 0;
+            // What is narrower than a fraction of a pixel is so small that nobody sees its shape.
+            const bool speck = is_sub_pixel(splat);
+            const bool near =
+                splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane;
+            uint marks = speck ? MARK_SPECK : solid_marks(record);
+            marks |= near ? MARK_NEAR : 0;
+            bounds.solid = (marks & ~MARK_SPECK) != 0;
+            const vec2 gains = splat.swell * vec2(climb, -climb);
+            bounds.close = near || (bounds.solid && !ORTHOGRAPHIC && min(gains.x, gains.y) < LEAST_GAIN);
             imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
             imageStore(records, texel + 2,
                        uvec4(floatBitsToUint(splat.g * to_z), (floatBitsToUint(push) & ~MARKS) | marks,
@@ -107,14 +116,14 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
                        uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
                              packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
             const int solid_texel = int(first_solid + 2 * place);
-            if (marks != 0)
+            if (bounds.solid)
                 imageStore(records, solid_texel,
                            uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
             if (DEFERRED) {
                 const vec3 albedo = surfel_albedo(record);
                 imageStore(records, solid_texel + 1,
                            uvec4(record.clip, packHalf2x16(albedo.rg), packHalf2x16(vec2(albedo.b, 0)), 0));
-            } else if (marks != 0) {
+            } else if (bounds.solid) {
                 imageStore(records, solid_texel + 1, uvec4(record.clip, 0, 0, 0));
             }
         }
@@ -156,39 +165,40 @@ void main() {
     subgroupMemoryBarrierShared();
     subgroupBarrier();
 
-    PixelBounds group_bounds = PixelBounds(uvec2(0xffff), uvec2(0), false);
+    PixelBounds group_bounds = PixelBounds(uvec2(0xffff), uvec2(0), false, false);
     uint shown = 0;
     uvec2 own_block = uvec2(0);  // of the block with the number of this invocation
-    bool solid = false;
+    uint cell_marks = 0;
     if (kept != 0) {
         uint block = 0;
         do {
             const uint i = block * BLOCK + lane;
             PixelBounds bounds =
                 record_surfel(i < kept, instance.first_surfel + remaining[min(i, kept - 1)], group * GROUP + i);
-            solid = solid || subgroupBallot(bounds.solid).x != 0;
+            const bool solid = subgroupBallot(bounds.solid).x != 0;
             shown += subgroupBallotBitCount(subgroupBallot(bounds.low.x < bounds.high.x));
             bounds = united(bounds);
             group_bounds.low = min(group_bounds.low, bounds.low);
             group_bounds.high = max(group_bounds.high, bounds.high);
             if (block == lane && bounds.low.x < bounds.high.x)
-                own_block = bounds.low | bounds.high << 16;
+                own_block = bounds.low | bounds.high << 16 | uvec2(solid ? BLOCK_SOLID : 0, 0);
+            cell_marks |= bounds.low.x >= bounds.high.x ? 0 : (solid ? CELL_HAS_SOLID : CELL_HAS_FLAT);
+            cell_marks |= subgroupBallot(bounds.close).x != 0 ? CELL_HAS_CLOSE : 0;
             ++block;
         } while (block * BLOCK < kept);
     }
-    imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block.x | (solid ? BLOCK_SOLID : 0), own_block.y, 0, 0));
+    imageStore(block_bounds, int(group * BLOCKS + lane), uvec4(own_block, 0, 0));
     if ((instance.flags & INSTANCE_LISTED) != 0 && lane == 0) list.first[group] = shown;
 
     if ((instance.flags & INSTANCE_TILED) == 0 || group_bounds.low.x >= group_bounds.high.x) return;
     const uvec2 first_cell = group_bounds.low >> tiles.cell_shift;
     const uvec2 touched = ((group_bounds.high - 1) >> tiles.cell_shift) + 1 - first_cell;
-    const uint marks = solid ? CELL_HAS_SOLID : CELL_HAS_FLAT;
     uint i = lane;
     if (i < touched.x * touched.y) do {
             const uint cell = (first_cell.y + i / touched.x) * tiles.cells_x + first_cell.x + i % touched.x;
             atomicOr(masks[cell * tiles.words + group / 32], 1u << group % 32);
             atomicAdd(cells[cell], 1);
-            atomicOr(cells[cell], marks);
+            atomicOr(cells[cell], cell_marks);
             i += gl_WorkGroupSize.x;
         } while (i < touched.x * touched.y);
 }

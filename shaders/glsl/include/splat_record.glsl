@@ -41,6 +41,9 @@ uvec4 pack_place(vec2 anchor, vec2 reach, float z) {
 // Depth buffer values are encode_depth's, linear in the pixel along a plane:
 //   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
 //   orthographic  z = z_P + g'.d - h s,  g' = g in depth buffer values a pixel
+// Of what a solid gains towards its axis; tiles leave those that may gain less to another way of meeting them.
+const float LEAST_GAIN = -0.9;
+
 struct SplatPlane {
     vec4 plane_map;
     vec2 g;
@@ -66,7 +69,7 @@ struct SplatSolid {
 
 // Flat splats have no texel of this kind: anything may be there.
 SplatSolid unpack_solid(uvec4 texel, uint clip, uint marks) {
-    if (marks == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
+    if ((marks & ~MARK_SPECK) == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
     const vec3 depths = uintBitsToFloat(texel.xyz);
     return SplatSolid(depths.xy, depths.z, decode_extent(marks & MARK_SWELL).xy, unpackSnorm2x16(texel.w),
                       decode_clip((marks & MARK_CUT) != 0 ? clip : 0));

@@ -40,17 +40,19 @@ layout(set = 2, binding = 3, std430) buffer TileMasks {
     uint masks[];
 };  // [cell][word]
 layout(set = 2, binding = 5, std430) buffer TileCells {
-    uvec4 dispatch[4];  // workgroups: tiles of a cell, cells, 1; by CELLS_*
+    uvec4 dispatch[5];  // workgroups: tiles of a cell, cells, 1; by CELLS_*
     uint cells[];  // groups of each, with marks; then, as many again for each of CELLS_*, where they are (x, y: 16 bits
                    // each)
 };
-// Lists of cells: gathered at once, those that hold splats of disks alone, of solids alone, of both; in segments.
+// Lists of cells: gathered at once, those that hold splats of disks alone, of solids alone, of both, solids that are close
+// to the eye among them; in segments.
 const uint CELLS_FLAT = 0;
 const uint CELLS_SOLID = 1;
 const uint CELLS_BOTH = 2;
-const uint CELLS_SEGMENTED = 3;
-const uint CELL_HAS_FLAT = 1 << 30, CELL_HAS_SOLID = 1 << 31;
-uint groups_of_cell(uint cell) { return cells[cell] & ~(CELL_HAS_FLAT | CELL_HAS_SOLID); }
+const uint CELLS_CLOSE = 3;
+const uint CELLS_SEGMENTED = 4;
+const uint CELL_HAS_CLOSE = 1 << 29, CELL_HAS_FLAT = 1 << 30, CELL_HAS_SOLID = 1 << 31;
+uint groups_of_cell(uint cell) { return cells[cell] & ~(CELL_HAS_CLOSE | CELL_HAS_FLAT | CELL_HAS_SOLID); }
 
 // Splats to be rasterised, in the order of their surfels.
 layout(set = 2, binding = 8, std430) buffer SplatList {
@@ -63,8 +65,8 @@ uint cell_count() {
     return tiles.cells_x * tiles.cells_y;
 }
 
-// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, for all
-// blocks of a group that has a solid.
+// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, where one of
+// its splats is a solid.
 const uint BLOCK_SOLID = 0x8000;
 
 // Whether a block has a splat.

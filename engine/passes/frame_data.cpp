@@ -1,9 +1,11 @@
 #include "engine/passes/frame_data.h"
 
 #include "engine/scene/surfel_store.h"
+#include "preprocess/model_format/error.h"
 
 #include <bit>
 #include <cstring>
+#include <string>
 #include <vector>
 
 namespace splice {
@@ -13,6 +15,7 @@ namespace {
 // The view of sampling (thesis figure 4.4) has to show single disks: so few, and so much smaller, that they lie apart.
 constexpr float kSampleShare = 0.12f;
 constexpr float kSampleRadius = 0.6f;
+constexpr std::size_t kLightTexels = sizeof(LightRecord) / 16;
 
 LightRecord light_record(const Light& light, const glm::dmat4& view) {
     const glm::dmat4 to_view = light.space == LightSpace::kWorld ? view : glm::dmat4(1.0);
@@ -52,7 +55,7 @@ gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device) {
     const VkShaderStageFlags stages =
         VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
     return {device,
-            {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, stages, 1}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, stages, 1}}};
+            {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, stages, 1}, {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, stages, 1}}};
 }
 
 FrameData::FrameData(gpu::Device& device)
@@ -68,14 +71,18 @@ FrameData::FrameData(gpu::Device& device)
 }
 
 void FrameData::reserve_lights(std::size_t count) {
+    const std::size_t most = device_.limits().maxTexelBufferElements / kLightTexels;
+    if (count > most)
+        throw UsageError("a scene of " + std::to_string(count) + " lights: this device can take " + std::to_string(most));
     if (lights_ && lights_.size() >= count * sizeof(LightRecord)) return;
     lights_ = gpu::Buffer(device_, {.size = count * sizeof(LightRecord),
-                                    .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                    .usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
                                     .memory = gpu::MemoryUse::upload,
                                     .name = "lights"});
+    light_view_ = gpu::create_texel_view(device_, lights_, VK_FORMAT_R32G32B32A32_SFLOAT);
     gpu::DescriptorWriter(set_)
         .uniform_buffer(0, uniforms_.handle())
-        .storage_buffer(1, lights_.handle())
+        .sampled_texels(1, light_view_.get())
         .write(device_);
 }
 

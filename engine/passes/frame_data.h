@@ -59,6 +59,7 @@ class FrameData {
     gpu::DescriptorSetLayout layout_;
     gpu::DescriptorPool pool_;
     gpu::Buffer uniforms_, lights_;
+    gpu::UniqueBufferView light_view_;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 

@@ -53,7 +53,8 @@ bool may_show(uint index) {
 // Marks of a solid or a cut disk; 0: the surfel is a flat disk.
 uint solid_marks(SurfelRecord record) {
     if (VIEW == VIEW_SAMPLES) return 0;
-    return (record.extent & MARK_SWELL) | (!is_ellipse(record) && record.clip >> 6 != 0 ? MARK_CUT : 0);
+    const bool cut = !is_ellipse(record) && record.clip >> 6 != 0;
+    return ((record.extent & EXTENT_SWELL) != 0 ? MARK_SWELL : 0) | (cut ? MARK_CUT : 0);
 }
 
 struct PixelBounds {
@@ -119,12 +120,10 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             if (bounds.solid)
                 imageStore(records, solid_texel,
                            uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
-            if (DEFERRED) {
-                const vec3 albedo = surfel_albedo(record);
+            if (DEFERRED || bounds.solid) {
+                const vec3 clip = (marks & MARK_CUT) != 0 ? decode_clip(record.clip) : NO_CLIP;
                 imageStore(records, solid_texel + 1,
-                           uvec4(record.clip, packHalf2x16(albedo.rg), packHalf2x16(vec2(albedo.b, 0)), 0));
-            } else if (bounds.solid) {
-                imageStore(records, solid_texel + 1, uvec4(record.clip, 0, 0, 0));
+                           pack_last(clip, splat.swell, DEFERRED ? surfel_albedo(record) : vec3(0)));
             }
         }
     }

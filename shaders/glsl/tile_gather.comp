@@ -139,7 +139,7 @@ TileSplat read_splat(uint block, const int kind, Tile tile) {
     if (kind != FLAT) {
         const int solid_texel = int(tiles.first_solid + 2 * mine.number);
         const SplatSolid solid = unpack_solid(texelFetch(record_texels, solid_texel),
-                                              texelFetch(record_texels, solid_texel + 1).x, mine.splat.marks);
+                                              texelFetch(record_texels, solid_texel + 1), mine.splat.marks);
         mine.plane.u += solid.plane_offset.x * mine.plane.e;
         mine.plane.v += solid.plane_offset.y * mine.plane.e;
         mine.solid = solid_in_tile(solid, mine.plane);

@@ -49,9 +49,12 @@ struct LightRecord {
     vec4 vector;    // directional: xyz towards the light, view space, unit, w = 0; point: xyz its position, w = 1
     vec4 colour;    // rgb linear; a = 1 / range^2 of a point light
 };
-layout(set = 0, binding = 1, std430) readonly buffer LightRecords {
-    LightRecord lights[];
-};
+// Texels, two a light, not a storage buffer: software devices read those lane by lane.
+layout(set = 0, binding = 1) uniform samplerBuffer light_texels;
+
+LightRecord light_record(uint number) {
+    return LightRecord(texelFetch(light_texels, int(2 * number)), texelFetch(light_texels, int(2 * number + 1)));
+}
 
 const uint INSTANCE_TWO_SIDED = 1;
 const uint INSTANCE_FIRST_SEGMENT = 2;  // compute: nothing was gathered yet

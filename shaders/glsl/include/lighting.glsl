@@ -40,7 +40,7 @@ vec3 shade(vec3 albedo, vec3 normal, vec3 position) {
     vec3 diffuse = frame.ambient;
     vec3 highlight = vec3(0);
     for (uint i = 0; i < frame.light_count; ++i) {
-        const Light light = light_at(lights[i], normal, position);
+        const Light light = light_at(light_record(i), normal, position);
         diffuse += light.diffuse;
         highlight += light.highlight;
     }

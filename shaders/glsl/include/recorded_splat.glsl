@@ -21,7 +21,7 @@ RecordedSplat recorded_splat(uint slot, const bool deferred) {
     const SplatPlace place = unpack_place(texelFetch(record_texels, texel));
     const SplatPlane plane = unpack_plane(texelFetch(record_texels, texel + 1), texelFetch(record_texels, texel + 2));
     const uvec4 last = deferred || plane.marks != 0 ? texelFetch(record_texels, solid_texel + 1) : uvec4(0);
-    const SplatSolid solid = unpack_solid(texelFetch(record_texels, solid_texel), last.x, plane.marks);
+    const SplatSolid solid = unpack_solid(texelFetch(record_texels, solid_texel), last, plane.marks);
     const SplatFilter filtered = filter_of(plane);
     RecordedSplat recorded;
     recorded.marks = plane.marks;

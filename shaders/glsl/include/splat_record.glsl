@@ -6,16 +6,17 @@
 //   1  plane_map
 //   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
 //   3  colour, its change along u, its change along v but for blue (halves); deferred: the normal instead, its xyz for rgb
-//   4  skew, climb, plane_offset; 5  the clip as format::Surfel stores it; deferred: albedo (halves), of flat ones, too
+//   4  skew, climb, plane_offset
+//   5  direction of the clip line, red and green of the albedo, its blue (halves) and the clip line's offset (16 bits),
+//      swell (halves); of flat splats the albedo alone, where shading is deferred
 #ifndef SPLICE_SPLAT_RECORD_GLSL
 #define SPLICE_SPLAT_RECORD_GLSL
 
-// Marks: how far the solid reaches above and below, as format::Surfel stores it (5 bits each), and
-const uint MARKS = 0x1fff;
-const uint MARK_SWELL = 0x3ff;
-const uint MARK_SPECK = 1 << 10;
-const uint MARK_NEAR = 1 << 11;  // crosses the near plane
-const uint MARK_CUT = 1 << 12;   // by a line
+const uint MARKS = 0xf;
+const uint MARK_SPECK = 1;
+const uint MARK_NEAR = 2;   // crosses the near plane
+const uint MARK_CUT = 4;    // by a line
+const uint MARK_SWELL = 8;  // reaches above its plane or below
 
 float depth_range() {
     return frame.far_plane - frame.near_plane;
@@ -67,12 +68,21 @@ struct SplatSolid {
     vec3 clip;          // decode_clip
 };
 
-// Flat splats have no texel of this kind: anything may be there.
-SplatSolid unpack_solid(uvec4 texel, uint clip, uint marks) {
+const float CLIP_OFFSET_STEPS = 65535;
+
+// Flat splats have no texels of this kind: anything may be there.
+SplatSolid unpack_solid(uvec4 texel, uvec4 last, uint marks) {
     if ((marks & ~MARK_SPECK) == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
     const vec3 depths = uintBitsToFloat(texel.xyz);
-    return SplatSolid(depths.xy, depths.z, decode_extent(marks & MARK_SWELL).xy, unpackSnorm2x16(texel.w),
-                      decode_clip((marks & MARK_CUT) != 0 ? clip : 0));
+    const vec3 clip = vec3(unpackSnorm2x16(last.x), float(last.z >> 16) * (1 / CLIP_OFFSET_STEPS));
+    return SplatSolid(depths.xy, depths.z, unpackHalf2x16(last.w), unpackSnorm2x16(texel.w), clip);
+}
+
+// NO_CLIP included. `swell` is rounded up.
+uvec4 pack_last(vec3 clip, vec2 swell, vec3 albedo) {
+    const uint blue = packHalf2x16(vec2(albedo.b, 0)) & 0xffff;
+    return uvec4(packSnorm2x16(clip.xy), packHalf2x16(albedo.rg),
+                 blue | uint(round(clip.z * CLIP_OFFSET_STEPS)) << 16, packHalf2x16(swell * (1 + 1.0 / 1024)));
 }
 
 struct SplatPaint {

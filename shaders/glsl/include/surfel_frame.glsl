@@ -138,9 +138,9 @@ SurfelColour surfel_colour(SurfelRecord record, SurfelFrame surfel) {
     }
     if (VIEW != VIEW_NORMALS) {
         for (uint i = 0; i < frame.light_count; ++i) {
-            const LightRecord light_record = lights[i];
+            const LightRecord record_of_light = light_record(i);
             [[unroll]] for (int p = 0; p < LIT_POINTS; ++p) {
-                const Light light = light_at(light_record, normals[p], positions[p]);
+                const Light light = light_at(record_of_light, normals[p], positions[p]);
                 diffuse[p] += light.diffuse;
                 highlights[p] += light.highlight;
             }

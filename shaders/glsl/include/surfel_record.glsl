@@ -44,6 +44,8 @@ vec2 normal_of(uvec4 first, uvec4 second) {
 const vec3 EXTENT_POWERS = vec3(0.4, 0.4, 0.25);
 const vec3 EXTENT_ONES = vec3(31, 31, 24);
 
+const uint EXTENT_SWELL = 0x3ff;  // bits of above and below
+
 // Above, below, epsilon, in radii.
 vec3 decode_extent(uint bits) {
     const uvec3 steps = uvec3(bits & 31, bits >> 5 & 31, bits >> 10);

@@ -27,7 +27,8 @@ bool supports_setup(const gpu::Device& device) {
     properties.pNext = &subgroups;
     vkGetPhysicalDeviceProperties2(device.physical(), &properties);
     constexpr VkSubgroupFeatureFlags needed = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT |
-                                              VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+                                              VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT |
+                                              VK_SUBGROUP_FEATURE_VOTE_BIT;
     return subgroups.subgroupSize >= kTileWidth && (subgroups.supportedOperations & needed) == needed &&
            (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
 }

@@ -13,6 +13,7 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 #include "frame.glsl"
 #include "octahedral.glsl"
 #include "colour.glsl"
@@ -102,6 +103,7 @@ struct Tile {
     vec4 sum[TILE.y];
     vec4 normal_sum[TILE.y];  // deferred: as FrameTargets::normals
     bool owned[TILE.y];
+    bool lacks[TILE.y];  // owned, but next to nothing was painted
     float farthest;  // of what surfels own; beyond 1: nothing
 };
 
@@ -112,8 +114,9 @@ vec2 centre_of(Tile tile) {
     return vec2(tile.corner) + 0.5 * vec2(TILE);
 }
 
-// Kinds of splats, and how solids are met: cells where something is close have all of theirs met exactly.
-const int FLAT = 0, SOLID = 1, CLOSE_SOLID = 2;
+// What is met of a splat: a flat disk; a solid; the same, close to the eye; what a line leaves of a solid's disk. Cells
+// where something is close have all of their solids met that way.
+const int FLAT = 0, SOLID = 1, CLOSE_SOLID = 2, CUT_DISK = 3;
 const int SOLIDS = CELLS == CELLS_CLOSE || CELLS == CELLS_SEGMENTED ? CLOSE_SOLID : SOLID;
 
 // A splat of a block, one an invocation.
@@ -123,6 +126,7 @@ struct TileSplat {
     TilePlane plane;
     TileSolid solid;
     TileAxis axis;
+    vec3 past_clip;
     bool speck;
     uint number;
 };
@@ -130,29 +134,51 @@ struct TileSplat {
 TileSplat read_splat(uint block, const int kind, Tile tile) {
     TileSplat mine;
     mine.number = block * BLOCK + gl_LocalInvocationID.x;
-    const int texel = int(mine.number * RECORD_TEXELS);
+    const int texel = int(mine.number * RECORD_TEXELS), solid_texel = int(tiles.first_solid + 2 * mine.number);
     mine.place = unpack_place(texelFetch(record_texels, texel));
     mine.splat = unpack_plane(texelFetch(record_texels, texel + 1), texelFetch(record_texels, texel + 2));
     mine.plane = plane_in_tile(mine.place.z, mine.splat, first_pixel(tile) - mine.place.anchor);
     mine.speck = (mine.splat.marks & MARK_SPECK) != 0;
     if (mine.speck) mine.plane = speck_in_tile(mine.place, first_pixel(tile));
-    if (kind != FLAT) {
-        const int solid_texel = int(tiles.first_solid + 2 * mine.number);
-        const SplatSolid solid = unpack_solid(texelFetch(record_texels, solid_texel),
-                                              texelFetch(record_texels, solid_texel + 1), mine.splat.marks);
-        mine.plane.u += solid.plane_offset.x * mine.plane.e;
-        mine.plane.v += solid.plane_offset.y * mine.plane.e;
-        mine.solid = solid_in_tile(solid, mine.plane);
-        if (kind == SOLID) mine.axis = axis_in_tile(mine.solid, mine.place.z);
+    if (kind == FLAT) return mine;
+    const uvec4 last = texelFetch(record_texels, solid_texel + 1);
+    if (kind == CUT_DISK) {
+        mine.past_clip = past_clip_in_tile(unpack_clip(last, mine.splat.marks), mine.plane);
+        return mine;
     }
+    const SplatSolid solid = unpack_solid(texelFetch(record_texels, solid_texel), last, mine.splat.marks);
+    mine.plane.u += solid.plane_offset.x * mine.plane.e;
+    mine.plane.v += solid.plane_offset.y * mine.plane.e;
+    mine.solid = solid_in_tile(solid, mine.plane);
+    if (kind == SOLID) mine.axis = axis_in_tile(mine.solid, mine.place.z);
+    mine.past_clip = mine.solid.past_clip;
     return mine;
 }
 
-// What meets a pixel's ray; `clip` is past_clip there, where there are solids.
-Meeting meet(PixelPlane at, const int kind, TileSolid solid, TileAxis axis, float clip) {
-    if (kind == CLOSE_SOLID) return meet_close_solid(at, solid, clip);
-    if (kind == SOLID) return meet_solid(at, axis, clip);
-    return meet_disk(at);
+// The splat of another invocation, as its pixels meet it.
+struct MetSplat {
+    TilePlane plane;
+    TileSolid solid;
+    TileAxis axis;
+    vec3 past_clip;
+};
+
+MetSplat hand_round(TileSplat mine, const int kind, uint i) {
+    MetSplat met;
+    met.plane = hand_round(mine.plane, i);
+    if (kind != FLAT) met.past_clip = subgroupShuffle(mine.past_clip, i);
+    if (kind == SOLID) met.axis = hand_round(mine.axis, i);
+    if (kind == CLOSE_SOLID) met.solid = hand_round(mine.solid, i);
+    return met;
+}
+
+// What a pixel's ray meets of it; `past_clip` is that of the pixel.
+Meeting meet(PixelPlane at, const int kind, MetSplat splat, float past_clip) {
+    if (kind == CLOSE_SOLID) return meet_close_solid(at, splat.solid, past_clip);
+    if (kind == SOLID) return meet_solid(at, splat.axis, past_clip);
+    Meeting meeting = meet_disk(at);
+    if (kind == CUT_DISK) meeting.on_disk = meeting.on_disk && past_clip <= 0;
+    return meeting;
 }
 
 void see_block(uint block, const int kind, inout Tile tile) {
@@ -162,28 +188,18 @@ void see_block(uint block, const int kind, inout Tile tile) {
     if (left != 0) do {
             const uint i = findLSB(left);
             left &= left - 1;
-            const TilePlane plane = hand_round(mine.plane, i);
+            const MetSplat splat = hand_round(mine, kind, i);
             const float push = subgroupShuffle(mine.splat.push, i);
-            PixelPlane at = at_column(plane, column);
-            TileSolid solid;
-            TileAxis axis;
-            vec3 past_clip;
-            if (kind == CLOSE_SOLID) {
-                solid = hand_round(mine.solid, i);
-                past_clip = solid.past_clip;
-            } else if (kind == SOLID) {
-                axis = hand_round(mine.axis, i);
-                past_clip = axis.past_clip;
-            }
-            float clip = kind == FLAT ? 0 : past_clip.x + past_clip.y * column;
+            PixelPlane at = at_column(splat.plane, column);
+            float past_clip = kind == FLAT ? 0 : splat.past_clip.x + splat.past_clip.y * column;
             [[unroll]] for (int row = 0; row < TILE.y; ++row) {
-                const Meeting meeting = meet(at, kind, solid, axis, clip);
+                const Meeting meeting = meet(at, kind, splat, past_clip);
                 const float away = push * tile.along_axis[row] * (meeting.beside_disk ? BESIDE_PUSH : 1);
                 const float back = pushed(meeting.z, meeting.share, away);
                 const bool met = meeting.on_disk || meeting.beside_disk;
                 tile.visible[row] = met ? larger(tile.visible[row], back) : tile.visible[row];
-                at = next_row(at, plane);
-                if (kind != FLAT) clip += past_clip.z;
+                at = next_row(at, splat.plane);
+                if (kind != FLAT) past_clip += splat.past_clip.z;
             }
         } while (left != 0);
 }
@@ -194,7 +210,24 @@ float falloff(float x) {
     return 0.99998916 + x * (-0.99945630 + x * (0.49556967 + x * (-0.15375046 + x * 0.025536540)));
 }
 
-void paint_block(uint block, const int kind, inout Tile tile) {
+void add_part(float part, float weight, float z, vec3 colour, vec3 albedo, int row, inout Tile tile) {
+    if (VIEW == VIEW_OVERLAP) {
+        tile.sum[row].a += part;
+        return;
+    }
+    if (DEFERRED) {
+        tile.sum[row].rgb += part * albedo;
+        tile.normal_sum[row] += part * vec4(colour, weight * z);
+    } else if (VIEW == VIEW_DEPTH) {
+        tile.sum[row].rgb += part * weight * decode_depth(max(z, 1e-30));
+    } else {
+        tile.sum[row].rgb += part * larger(colour, vec3(0));
+    }
+    tile.sum[row].a += part * weight;
+}
+
+// `lacking`: where next to nothing was painted, what is met beside disks.
+void paint_block(uint block, const int kind, const bool lacking, inout Tile tile) {
     const float column = float(gl_LocalInvocationID.x);
     const TileSplat mine = read_splat(block, kind, tile);
     const int texel = int(mine.number * RECORD_TEXELS);
@@ -221,12 +254,13 @@ void paint_block(uint block, const int kind, inout Tile tile) {
     const vec3 ellipse_column = vec3(conic.x * d.x * d.x + conic.y * d.x * d.y + conic.z * d.y * d.y,
                                      2 * conic.x * d.x + conic.y * d.y, conic.x);
     const vec3 ellipse_row = vec3(2 * conic.z * d.y + conic.y * d.x, conic.y, conic.z);
+    const float my_half_pixel = kind == FLAT ? 0 : 0.5 * length(mine.past_clip.yz);
 
     uint left = subgroupBallot(touches_tile(mine.place, centre_of(tile)) && nearest_z >= tile.farthest).x;
     if (left != 0) do {
             const uint i = findLSB(left);
             left &= left - 1;
-            const TilePlane plane = hand_round(mine.plane, i);
+            const MetSplat splat = hand_round(mine, kind, i);
             const vec2 z_ends = subgroupShuffle(vec2(farthest_z, nearest_z), i);
             const vec3 by_column = subgroupShuffle(ellipse_column, i), by_row = subgroupShuffle(ellipse_row, i);
             float ellipse = by_column.x + column * (by_column.y + column * by_column.z);
@@ -234,56 +268,45 @@ void paint_block(uint block, const int kind, inout Tile tile) {
             const float weight = subgroupShuffle(my_weight, i);
             const vec3 colour = subgroupShuffle(my_colour, i);
             const vec3 albedo = DEFERRED ? subgroupShuffle(my_albedo, i) : vec3(0);
-            PixelPlane at = at_column(plane, column);
-            TileSolid solid;
-            TileAxis axis;
-            vec3 past_clip, bent, bent_step, cu, cv;
-            if (kind == FLAT) {
+            // Of disks alone the colour is affine, too.
+            const bool affine = kind == FLAT || kind == CUT_DISK;
+            vec3 bent, bent_step, cu, cv;
+            if (affine) {
                 bent = subgroupShuffle(my_bend, i) + column * subgroupShuffle(bend_column, i);
                 bent_step = subgroupShuffle(bend_row, i);
             } else {
                 cu = subgroupShuffle(bend_u, i);
                 cv = subgroupShuffle(bend_v, i);
             }
-            if (kind == CLOSE_SOLID) {
-                solid = hand_round(mine.solid, i);
-                past_clip = solid.past_clip;
-            } else if (kind == SOLID) {
-                axis = hand_round(mine.axis, i);
-                past_clip = axis.past_clip;
-            }
-            float clip = kind == FLAT ? 0 : past_clip.x + past_clip.y * column;
-            const float half_pixel = kind == FLAT ? 0 : 0.5 * length(past_clip.yz);
+            PixelPlane at = at_column(splat.plane, column);
+            float past_clip = kind == FLAT ? 0 : splat.past_clip.x + splat.past_clip.y * column;
+            const float half_pixel = kind == FLAT ? 0 : subgroupShuffle(my_half_pixel, i);
             [[unroll]] for (int row = 0; row < TILE.y; ++row) {
-                const Meeting meeting = meet(at, kind, solid, axis, clip);
-                if (kind != FLAT) bent = cu * meeting.nearest.x + cv * meeting.nearest.y;
-                // Beyond the disk, the colour at its border; beyond the plane's horizon, that of its centre.
-                const float across = kind == FLAT ? meeting.distance2 : dot(meeting.nearest, meeting.nearest);
-                const float scale = at.e > 0 ? inversesqrt(larger(across, at.e * at.e)) : 0;
-                const bool on_disk = meeting.on_disk && (kind != FLAT || at.e > 0);
-                const float exponent = smaller(on_disk ? meeting.distance2 * scale * scale : KERNEL_SUPPORT2, ellipse);
-                const float met_z = ORTHOGRAPHIC || kind != CLOSE_SOLID ? meeting.z : meeting.z / meeting.share;
-                const float z = smaller(larger(met_z, z_ends.x), z_ends.y);
-                const bool kept = kind == FLAT || clip <= half_pixel;
-                bool reached = on_disk || meeting.beside_disk || (ellipse < KERNEL_SUPPORT2 && kept);
-                reached = reached && z >= tile.visible[row];
-                if (VIEW == VIEW_OVERLAP) {
-                    tile.sum[row].a += reached ? 1 : 0;
-                } else {
-                    const float part = reached ? (meeting.beside_disk ? BESIDE_WEIGHT : falloff(exponent)) : 0;
-                    if (DEFERRED) {
-                        tile.sum[row].rgb += part * albedo;
-                        tile.normal_sum[row] += part * vec4(colour + bent * scale, weight * z);
-                    } else if (VIEW == VIEW_DEPTH) {
-                        tile.sum[row].rgb += part * weight * decode_depth(max(z, 1e-30));
-                    } else {
-                        tile.sum[row].rgb += part * larger(colour + bent * scale, vec3(0));
-                    }
-                    tile.sum[row].a += part * weight;
+                const Meeting meeting = meet(at, kind, splat, past_clip);
+                const bool on_disk = meeting.on_disk && at.e > 0;
+                const bool in_footprint = ellipse < KERNEL_SUPPORT2 && (kind == FLAT || past_clip <= half_pixel);
+                float met_z = meeting.z / meeting.share;
+                vec2 nearest = meeting.nearest;
+                if (kind == CLOSE_SOLID && in_footprint && meeting.beside_disk) {
+                    met_z = larger(met_z, ORTHOGRAPHIC ? at.z : at.z * at.e);
+                    nearest = vec2(at.u, at.v);
                 }
-                at = next_row(at, plane);
-                if (kind == FLAT) bent += bent_step;
-                if (kind != FLAT) clip += past_clip.z;
+                // Beyond the disk, the colour at its border; beyond the plane's horizon, that of its centre.
+                const float across = affine ? meeting.distance2 : dot(nearest, nearest);
+                const float scale = at.e > 0 ? inversesqrt(larger(across, at.e * at.e)) : 0;
+                if (!affine) bent = cu * nearest.x + cv * nearest.y;
+                const float exponent = smaller(on_disk ? meeting.distance2 * scale * scale : KERNEL_SUPPORT2, ellipse);
+                const float z = smaller(larger(met_z, z_ends.x), z_ends.y);
+                bool reached = lacking ? meeting.beside_disk && tile.lacks[row]
+                                       : on_disk || meeting.beside_disk || in_footprint;
+                reached = reached && z >= tile.visible[row];
+                const float share = VIEW == VIEW_OVERLAP                          ? 1
+                                    : meeting.beside_disk && (lacking || !in_footprint) ? BESIDE_WEIGHT
+                                                                                        : falloff(exponent);
+                add_part(reached ? share : 0, weight, z, colour + bent * scale, albedo, row, tile);
+                at = next_row(at, splat.plane);
+                if (affine) bent += bent_step;
+                if (kind != FLAT) past_clip += splat.past_clip.z;
                 ellipse += slope;
                 slope += 2 * by_row.z;
             }
@@ -321,17 +344,36 @@ void own(inout Tile tile) {
     tile.farthest = subgroupMin(tile.farthest);
 }
 
-void paint(const int kind, uint blocks, inout Tile tile) {
+void paint(const int kind, const bool lacking, uint blocks, inout Tile tile) {
     if (blocks == 0 || tile.farthest > 1) return;
     uint n = 0;
     do {
         const uint block = touching_blocks(kind, n, blocks);
         const uint end = min(blocks - n, gl_WorkGroupSize.x);
         uint i = 0;
-        do paint_block(subgroupShuffle(block, i), kind, tile);
+        do paint_block(subgroupShuffle(block, i), kind, lacking, tile);
         while (++i < end);
         n += gl_WorkGroupSize.x;
     } while (n < blocks);
+}
+
+// Of solids mostly the disks show: what is met beside them weighs so little that it is looked for only where all else
+// does, too. Elsewhere less than a hundredth of the colour is left out.
+const float ENOUGH_WEIGHT = 100 * BESIDE_WEIGHT;
+const bool PAINT_DISKS_FIRST = SOLIDS == SOLID && VIEW != VIEW_OVERLAP;
+
+void paint_solids(uint blocks, inout Tile tile) {
+    if (!PAINT_DISKS_FIRST) {
+        paint(CLOSE_SOLID, false, blocks, tile);
+        return;
+    }
+    paint(CUT_DISK, false, blocks, tile);
+    bool lacks = false;
+    [[unroll]] for (int row = 0; row < TILE.y; ++row) {
+        tile.lacks[row] = tile.owned[row] && tile.sum[row].a < ENOUGH_WEIGHT;
+        lacks = lacks || tile.lacks[row];
+    }
+    paint(SOLID, true, subgroupAny(lacks) ? blocks : 0, tile);
 }
 
 void main() {
@@ -374,8 +416,8 @@ void main() {
     }
     if (PART != PART_VISIBILITY) {
         own(tile);
-        if (CELLS != CELLS_SOLID) paint(FLAT, found.flat_blocks, tile);
-        if (CELLS != CELLS_FLAT) paint(SOLIDS, found.solid_blocks, tile);
+        if (CELLS != CELLS_SOLID) paint(FLAT, false, found.flat_blocks, tile);
+        if (CELLS != CELLS_FLAT) paint_solids(found.solid_blocks, tile);
     }
     const bool ends = PART == PART_ALL || (instance.flags & INSTANCE_LAST_SEGMENT) != 0;
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {

@@ -20,14 +20,18 @@ AttributeFragment attribute_fragment(vec2 pixel, vec4 anchor_g, vec4 plane_map, 
     // x^T V^-1 x / 2. The affine ellipse holds the disk except where perspective bends it; there the disk itself takes
     // over, so that no pixel that the visibility pass wrote is left without a weight.
     float exponent = KERNEL_MOMENT * (conic.x * d.x * d.x + 2 * conic.y * d.x * d.y + conic.z * d.y * d.y);
-    fragment.reached = hit.on_disk || hit.beside_disk || (exponent < KERNEL_SUPPORT2 && !hit.cut_off);
+    const bool in_footprint = exponent < KERNEL_SUPPORT2 && !hit.cut_off;
+    fragment.reached = hit.on_disk || hit.beside_disk || in_footprint;
     exponent = min(min(exponent, hit.distance2), KERNEL_SUPPORT2);
     const float share = KERNEL == KERNEL_DISK ? exp(-exponent) : other_kernel(exponent);
-    fragment.weight = conic_weight.w * (hit.beside_disk ? BESIDE_WEIGHT : share);
-    // Tested against the pushed-back depth of the visibility pass. Beyond the disk its plane may be anywhere.
+    fragment.weight = conic_weight.w * (hit.beside_disk && !in_footprint ? BESIDE_WEIGHT : share);
+    // Tested against the pushed-back depth of the visibility pass. Beyond the disk its plane may be anywhere; where the
+    // footprint covers what the solid made visible, either depth will do.
     const float rise = abs(rise_offset.x);
-    fragment.depth = clamp(hit.depth, anchor_depth - rise, anchor_depth + rise);
-    fragment.uv = hit.uv * inversesqrt(max(dot(hit.uv, hit.uv), 1));
+    const float depth = hit.beside_disk && in_footprint ? min(hit.depth, hit.plane_depth) : hit.depth;
+    fragment.depth = clamp(depth, anchor_depth - rise, anchor_depth + rise);
+    const vec2 uv = in_footprint && !hit.on_disk ? hit.plane_uv : hit.uv;
+    fragment.uv = uv * inversesqrt(max(dot(uv, uv), 1));
     return fragment;
 }
 

@@ -217,7 +217,9 @@ struct SplatHit {
     bool cut_off;      // it meets the plane where the line cut the disk off, more than half a pixel beyond
     float depth;       // of the plane there, or of that centre, or of where the ray is nearest the solid's axis
     float distance2;   // squared distance from the centre in radii, where the ray meets the disk; else NOWHERE
-    vec2 uv;           // where the ray meets the plane, in radii
+    vec2 uv;           // where the ray meets the plane, in radii, or is nearest the solid's axis
+    float plane_depth; // of the plane, whatever is met
+    vec2 plane_uv;
 };
 
 // How (u, v) e changes along the pixel's ray, a radius along the normal; t e changes by skew.z. In perspective skew.xy is
@@ -237,6 +239,8 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_
     SplatHit hit;
     hit.depth = ORTHOGRAPHIC ? anchor_depth - gd : (e > 0 ? anchor_depth / e : NOWHERE);
     hit.uv = e > 0 ? uv / e : vec2(0);
+    hit.plane_depth = hit.depth;
+    hit.plane_uv = hit.uv;
     // Times |e|; beyond the plane's horizon e is below 0.
     const float side = e < 0 ? -1 : 1;
     const float past_clip = side * (dot(clip.xy, d) + clip.z);

@@ -71,11 +71,15 @@ struct SplatSolid {
 const float CLIP_OFFSET_STEPS = 65535;
 
 // Flat splats have no texels of this kind: anything may be there.
+bool is_flat(uint marks) { return (marks & ~MARK_SPECK) == 0; }
+vec3 unpack_clip(uvec4 last, uint marks) {
+    if (is_flat(marks)) return NO_CLIP;
+    return vec3(unpackSnorm2x16(last.x), float(last.z >> 16) * (1 / CLIP_OFFSET_STEPS));
+}
 SplatSolid unpack_solid(uvec4 texel, uvec4 last, uint marks) {
-    if ((marks & ~MARK_SPECK) == 0) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
+    if (is_flat(marks)) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
     const vec3 depths = uintBitsToFloat(texel.xyz);
-    const vec3 clip = vec3(unpackSnorm2x16(last.x), float(last.z >> 16) * (1 / CLIP_OFFSET_STEPS));
-    return SplatSolid(depths.xy, depths.z, unpackHalf2x16(last.w), unpackSnorm2x16(texel.w), clip);
+    return SplatSolid(depths.xy, depths.z, unpackHalf2x16(last.w), unpackSnorm2x16(texel.w), unpack_clip(last, marks));
 }
 
 // NO_CLIP included. `swell` is rounded up.

@@ -4,18 +4,23 @@
 #define SPLICE_TILE_SOLID_GLSL
 
 struct TileSolid {
-    vec3 past_clip;     // as TilePlane
+    vec3 past_clip;     // past_clip_in_tile
     float clip_change;  // what a gain of 1 towards the axis adds to past_clip; perspective: over e, less past_clip
     vec2 skew;          // the same of (u, v)
     vec2 h;             // least and largest gain
     float climb;        // orthographic: the same of the depth buffer value
 };
 
+// As TilePlane: above 0 where the line cuts the disk off.
+vec3 past_clip_in_tile(vec3 clip, TilePlane plane) {
+    vec3 past_clip = clip.x * plane.u + clip.y * plane.v - clip.z * plane.e;
+    past_clip.x -= CLIP_SLACK * length(past_clip.yz);
+    return past_clip;
+}
+
 TileSolid solid_in_tile(SplatSolid solid, TilePlane plane) {
     const vec2 ends = vec2(-solid.swell.y, solid.swell.x) * (ORTHOGRAPHIC ? 1 : solid.climb);
-    vec3 past_clip = solid.clip.x * plane.u + solid.clip.y * plane.v - solid.clip.z * plane.e;
-    past_clip.x -= CLIP_SLACK * length(past_clip.yz);
-    return TileSolid(past_clip, dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew,
+    return TileSolid(past_clip_in_tile(solid.clip, plane), dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew,
                      vec2(min(ends.x, ends.y), max(ends.x, ends.y)), solid.climb);
 }
 

@@ -54,8 +54,9 @@ bool is_deferred(const FrameSettings& settings) {
 gpu::DescriptorSetLayout frame_set_layout(const gpu::Device& device) {
     const VkShaderStageFlags stages =
         VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
-    return {device,
-            {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, stages, 1}, {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, stages, 1}}};
+    return {
+        device,
+        {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, stages, 1}, {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, stages, 1}}};
 }
 
 FrameData::FrameData(gpu::Device& device)
@@ -73,7 +74,8 @@ FrameData::FrameData(gpu::Device& device)
 void FrameData::reserve_lights(std::size_t count) {
     const std::size_t most = device_.limits().maxTexelBufferElements / kLightTexels;
     if (count > most)
-        throw UsageError("a scene of " + std::to_string(count) + " lights: this device can take " + std::to_string(most));
+        throw UsageError("a scene of " + std::to_string(count) + " lights: this device can take " +
+                         std::to_string(most));
     if (lights_ && lights_.size() >= count * sizeof(LightRecord)) return;
     lights_ = gpu::Buffer(device_, {.size = count * sizeof(LightRecord),
                                     .usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,

@@ -35,7 +35,8 @@ SplatBuffers::SplatBuffers(gpu::Device& device)
                        {6, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT},
                        {7, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT},
                        {8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT},
-                       {9, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_SHADER_STAGE_VERTEX_BIT}}),
+                       {9, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_SHADER_STAGE_VERTEX_BIT},
+                       {10, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT}}),
       pool_(device),
       uniforms_(device, {.size = sizeof(TileUniforms),
                          .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
@@ -48,7 +49,8 @@ std::uint64_t SplatBuffers::most_groups(std::uint64_t most) const {
     return most == 0 ? all : std::min(most, all);
 }
 
-void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented) {
+void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room, std::span<const SplatGroup> sources,
+                           bool segmented) {
     const std::uint64_t groups = std::max<std::uint64_t>(room.groups, 1);
     const std::uint64_t words = std::max<std::uint64_t>(divided_up(room.tiled, 32), 1);
     std::uint32_t shift = kSmallestCellShift;
@@ -84,7 +86,13 @@ void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room,
     grow_texels(masks_, mask_view_, "tile masks", cells() * words * kWordBytes, VK_FORMAT_R32_UINT, storage | read);
     grow_texels(list_, list_view_, "splat list", kListGroups + (groups + room.listed * kTileGroup) * kWordBytes,
                 VK_FORMAT_R32_UINT, storage | read | indirect);
-    grown = grow(cells_, "tile cells", kTileCellList + (1 + kTileCellLists) * cells() * kWordBytes, storage | indirect) || grown;
+    grown =
+        grow(cells_, "tile cells", kTileCellList + (1 + kTileCellLists) * cells() * kWordBytes, storage | indirect) ||
+        grown;
+    grown = grow(sources_, "splat groups", std::max<std::uint64_t>(sources.size_bytes(), sizeof(SplatGroup)), storage,
+                 gpu::MemoryUse::upload) ||
+            grown;
+    if (!sources.empty()) std::memcpy(sources_.mapped().data(), sources.data(), sources.size_bytes());
     if (!grown) return;
     pool_.reset();
     set_ = pool_.allocate(layout_);
@@ -99,12 +107,14 @@ void SplatBuffers::prepare(const FrameSettings& settings, const SplatRoom& room,
         .sampled_texels(7, mask_view_.get())
         .storage_buffer(8, list_.handle())
         .sampled_texels(9, list_view_.get())
+        .storage_buffer(10, sources_.handle())
         .write(device_);
 }
 
-bool SplatBuffers::grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage) {
+bool SplatBuffers::grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
+                        gpu::MemoryUse memory) {
     if (buffer && buffer.size() >= bytes) return false;
-    buffer = gpu::Buffer(device_, {.size = bytes, .usage = usage, .name = name});
+    buffer = gpu::Buffer(device_, {.size = bytes, .usage = usage, .memory = memory, .name = name});
     return true;
 }
 

@@ -4,12 +4,14 @@
 
 #include "engine/passes/frame_data.h"
 #include "engine/passes/shader_types.h"
+#include "engine/passes/splat_plan.h"
 #include "engine/render_graph/executor/executor.h"
 #include "engine/render_graph/graph.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
 
 #include <cstdint>
+#include <span>
 
 namespace splice {
 
@@ -41,9 +43,10 @@ class SplatBuffers {
 
     /// Groups that one batch may have: what texel buffers hold, and at most `most` where that is not 0.
     std::uint64_t most_groups(std::uint64_t most) const;
-    /// `segmented`: tiles are gathered in segments, whatever their number. No submitted work may still use the frame
-    /// before.
-    void prepare(const FrameSettings& settings, const SplatRoom& room, bool segmented);
+    /// `sources`: of setup, for all batches. `segmented`: tiles are gathered in segments, whatever their number. No
+    /// submitted work may still use the frame before.
+    void prepare(const FrameSettings& settings, const SplatRoom& room, std::span<const SplatGroup> sources,
+                 bool segmented);
     SplatHandles import(graph::Graph& graph, graph::Bindings& bindings) const;
     /// Empties masks and cells.
     void clear_tiles(VkCommandBuffer commands) const;
@@ -56,12 +59,13 @@ class SplatBuffers {
     std::uint32_t cells() const { return values_.cells_x * values_.cells_y; }
 
   private:
-    bool grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage);
+    bool grow(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
+              gpu::MemoryUse memory = gpu::MemoryUse::device);
 
     gpu::Device& device_;
     gpu::DescriptorSetLayout layout_;
     gpu::DescriptorPool pool_;
-    gpu::Buffer uniforms_, records_, blocks_, masks_, cells_, list_;
+    gpu::Buffer uniforms_, sources_, records_, blocks_, masks_, cells_, list_;
     gpu::UniqueBufferView record_view_, block_view_, mask_view_, list_view_;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     TileUniforms values_{};

@@ -114,7 +114,9 @@ bool SplatPasses::uses(Technique technique) const {
 }
 
 void SplatPasses::plan(const DrawList& draws, const Techniques& techniques) {
-    batches_ = plan_splats(draws, techniques, buffers_.most_groups(most_groups_));
+    SplatPlan planned = plan_splats(draws, techniques, buffers_.most_groups(most_groups_));
+    batches_ = std::move(planned.batches);
+    groups_ = std::move(planned.groups);
 }
 
 SurfelOwnership SplatPasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
@@ -126,7 +128,7 @@ SurfelOwnership SplatPasses::add(graph::Graph& graph, graph::Bindings& bindings,
         room.listed = std::max<std::uint64_t>(room.listed, batch.range(Technique::kRaster).count);
     }
     const bool points = uses(Technique::kPoint);
-    buffers_.prepare(settings, room, is_mixed() || batches_.size() > 1);
+    buffers_.prepare(settings, room, groups_, is_mixed() || batches_.size() > 1);
     handles_ = buffers_.import(graph, bindings);
     targets.splat_depth = graph.create_image(
         "splat_depth", {.format = VK_FORMAT_R32_UINT, .width = settings.width, .height = settings.height});
@@ -366,14 +368,14 @@ void SplatPasses::set_up(const graph::PassContext& context, const FrameSettings&
     programs_.bind(context, Stage::kSetup, settings, {});
     for (const SplatJob& job : batch.jobs) {
         InstanceConstants constants = instance_constants(*job.instance, settings.epsilon_scale);
-        constants.first_surfel = job.first_surfel;
-        constants.surfel_count = job.count;
+        constants.surfel_count = job.groups;
         constants.first_group = job.first_group;
+        constants.first_word = job.first_source;
         if (job.technique == Technique::kTile) constants.flags |= kInstanceTiled;
         if (job.technique == Technique::kRaster) constants.flags |= kInstanceListed;
         programs_.push(context.commands, constants);
         programs_.bind_surfels(context.commands, job.surfels);
-        SplatPrograms::dispatch_groups(context.commands, divided_up(job.count, kTileGroup));
+        SplatPrograms::dispatch_groups(context.commands, job.groups);
     }
 }
 

@@ -87,6 +87,7 @@ class SplatPasses {
     graph::BufferHandle point_sums_;
     bool summed_ = false;  // something is in the sums
     std::vector<SplatBatch> batches_;
+    std::vector<SplatGroup> groups_;  // of all batches
 };
 
 }  // namespace splice

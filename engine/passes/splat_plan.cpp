@@ -11,39 +11,43 @@ namespace {
 
 class Planner {
   public:
-    explicit Planner(std::uint64_t most_groups) : most_(most_groups), batches_(1) {}
+    explicit Planner(std::uint64_t most_groups) : most_(most_groups) { plan_.batches.emplace_back(); }
 
     void add_ranges(const InstanceDraws& instance, const std::vector<DrawRange>& ranges, Technique technique) {
         for (const DrawRange& range : ranges)
             for (const SurfelChunk& chunk : instance.surfels->chunks()) {
                 const std::uint64_t first = std::max(range.first, chunk.first);
                 const std::uint64_t end = std::min(range.first + range.count, chunk.first + chunk.count);
-                if (first < end) add_surfels(instance, chunk.set, first - chunk.first, end - first, technique);
+                for (std::uint64_t next = first; next < end; next += kTileGroup)
+                    add_group(instance, chunk.set,
+                              {static_cast<std::uint32_t>(next - chunk.first),
+                               static_cast<std::uint32_t>(std::min<std::uint64_t>(end - next, kTileGroup))},
+                              technique);
             }
     }
-    std::vector<SplatBatch> take() { return std::move(batches_); }
+    SplatPlan take() { return std::move(plan_); }
 
   private:
-    void add_surfels(const InstanceDraws& instance, VkDescriptorSet set, std::uint64_t first, std::uint64_t count,
-                     Technique technique) {
-        while (count > 0) {
-            if (batches_.back().groups == most_) batches_.emplace_back();
-            SplatBatch& batch = batches_.back();
-            const std::uint64_t part = std::min(count, (most_ - batch.groups) * kTileGroup);
-            const std::uint64_t groups = (part + kTileGroup - 1) / kTileGroup;
-            batch.jobs.push_back({&instance, set, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(part),
-                                  static_cast<std::uint32_t>(batch.groups), technique});
-            GroupRange& range = batch.ranges[static_cast<std::size_t>(technique)];
-            if (range.count == 0) range.first = static_cast<std::uint32_t>(batch.groups);
-            range.count += static_cast<std::uint32_t>(groups);
-            batch.groups += groups;
-            first += part;
-            count -= part;
-        }
+    void add_group(const InstanceDraws& instance, VkDescriptorSet set, const SplatGroup& group, Technique technique) {
+        if (plan_.batches.back().groups == most_) plan_.batches.emplace_back();
+        SplatBatch& batch = plan_.batches.back();
+        const auto number = static_cast<std::uint32_t>(batch.groups);
+        const auto continues = [&](const SplatJob& job) {
+            return job.instance == &instance && job.surfels == set && job.technique == technique;
+        };
+        if (batch.jobs.empty() || !continues(batch.jobs.back()))
+            batch.jobs.push_back(
+                {&instance, set, 0, number, static_cast<std::uint32_t>(plan_.groups.size()), technique});
+        ++batch.jobs.back().groups;
+        GroupRange& range = batch.ranges[static_cast<std::size_t>(technique)];
+        if (range.count == 0) range.first = number;
+        ++range.count;
+        ++batch.groups;
+        plan_.groups.push_back(group);
     }
 
     std::uint64_t most_;
-    std::vector<SplatBatch> batches_;
+    SplatPlan plan_;
 };
 
 }  // namespace
@@ -59,7 +63,7 @@ Backend backend_of(Technique technique) {
     }
 }
 
-std::vector<SplatBatch> plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups) {
+SplatPlan plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups) {
     Planner planner(most_groups);
     for (const Technique technique : {Technique::kTile, Technique::kRaster, Technique::kPoint})
         for (const InstanceDraws& instance : draws.instances) {

@@ -23,11 +23,18 @@ struct Techniques {
     Technique small = Technique::kTile, others = Technique::kTile;
 };
 
-/// Consecutive surfels of one chunk of a model, and their first group in the batch.
+/// Surfels that one workgroup of setup works on: at most kTileGroup consecutive ones of the bound set. tile.glsl,
+/// GroupSources.
+struct SplatGroup {
+    std::uint32_t first_surfel, count;
+};
+static_assert(sizeof(SplatGroup) == 8);
+
+/// Groups of one chunk of a model, set up by one dispatch: their number, their first in the batch, and in the plan.
 struct SplatJob {
     const InstanceDraws* instance;
     VkDescriptorSet surfels;
-    std::uint32_t first_surfel, count, first_group;
+    std::uint32_t groups, first_group, first_source;
     Technique technique;
 };
 
@@ -43,7 +50,12 @@ struct SplatBatch {
     const GroupRange& range(Technique technique) const { return ranges[static_cast<std::size_t>(technique)]; }
 };
 
-/// At least one batch, of at most `most_groups` groups each. `draws` must outlive the result.
-std::vector<SplatBatch> plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups);
+struct SplatPlan {
+    std::vector<SplatBatch> batches;  // at least one
+    std::vector<SplatGroup> groups;   // of all batches
+};
+
+/// Batches of at most `most_groups` groups each. `draws` must outlive the result.
+SplatPlan plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups);
 
 }  // namespace splice

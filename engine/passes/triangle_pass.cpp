@@ -25,8 +25,8 @@ TrianglePass::TrianglePass(gpu::Device& device, const FrameData& data)
       vertex_(device, triangle_vert, "triangle.vert"),
       fragment_(device, triangle_frag, "triangle.frag") {}
 
-void TrianglePass::add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
-                       const DrawList& draws, const std::optional<VkClearValue>& picture) {
+void TrianglePass::add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const DrawList& draws,
+                       const std::optional<VkClearValue>& picture) {
     const bool wires = settings.view == View::kWireframe;
     if (wires && !device_.features().fill_mode_non_solid)
         throw UsageError("--view wireframe: the device " + device_.info().name + " cannot draw wires");
@@ -48,9 +48,8 @@ void TrianglePass::draw(const graph::PassContext& context, const FrameSettings& 
         if (instance.triangles.empty()) continue;
         const Variant variant{.wires = wires, .two_sided = instance.two_sided, .to_picture = to_picture};
         graph::PassPipelines& pipelines = pipelines_[{frame_variant(settings), variant}];
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.get(device_, context, [&] {
-            return pipeline_options(settings, variant);
-        }));
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                          pipelines.get(device_, context, [&] { return pipeline_options(settings, variant); }));
         const VkDescriptorSet frame_set = data_.set();
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.handle(), 0, 1, &frame_set, 0,
                                 nullptr);

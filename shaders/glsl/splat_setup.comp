@@ -146,16 +146,17 @@ void main() {
     first_solid = tiles.first_solid;
     // A dispatch is at most 65,535 workgroups wide.
     const uint workgroup = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uint first = workgroup * GROUP;
-    if (first >= instance.surfel_count) return;
-    const uint end = min(first + GROUP, instance.surfel_count);
-    const uint group = instance.first_group + workgroup;
+    if (workgroup >= instance.surfel_count) return;
+    const uint number = turn_of(workgroup, instance.surfel_count);
+    const uvec2 source = group_sources[instance.first_word + number];
+    const uint first = source.x, end = source.x + source.y;
+    const uint group = instance.first_group + number;
     const uint lane = gl_LocalInvocationID.x;
 
     uint kept = 0, batch = first;
     do {
         const uint index = batch + lane;
-        const bool shows = index < end && may_show(instance.first_surfel + min(index, end - 1));
+        const bool shows = index < end && may_show(min(index, end - 1));
         const uvec4 all = subgroupBallot(shows);
         if (shows) remaining[kept + subgroupBallotExclusiveBitCount(all)] = index;
         kept += subgroupBallotBitCount(all);
@@ -173,7 +174,7 @@ void main() {
         do {
             const uint i = block * BLOCK + lane;
             PixelBounds bounds =
-                record_surfel(i < kept, instance.first_surfel + remaining[min(i, kept - 1)], group * GROUP + i);
+                record_surfel(i < kept, remaining[min(i, kept - 1)], group * GROUP + i);
             const bool solid = subgroupBallot(bounds.solid).x != 0;
             shown += subgroupBallotBitCount(subgroupBallot(bounds.low.x < bounds.high.x));
             bounds = united(bounds);

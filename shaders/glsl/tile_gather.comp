@@ -377,11 +377,7 @@ void paint_solids(uint blocks, inout Tile tile) {
 }
 
 void main() {
-    // Software devices give each of their threads a run of workgroups: neighbouring cells, which hold about as much, go to
-    // different threads.
-    const uint half_way = (gl_NumWorkGroups.y + 1) / 2;
-    const uint turn = gl_WorkGroupID.y < half_way ? 2 * gl_WorkGroupID.y : 2 * (gl_WorkGroupID.y - half_way) + 1;
-    const uint place = cells[(1 + CELLS) * cell_count() + turn];
+    const uint place = cells[(1 + CELLS) * cell_count() + turn_of(gl_WorkGroupID.y, gl_NumWorkGroups.y)];
     const uint across_shift = tiles.cell_shift - findMSB(TILE.x);
     Tile tile;
     tile.corner = (uvec2(place & 0xffff, place >> 16) << tiles.cell_shift) +

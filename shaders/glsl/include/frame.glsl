@@ -72,7 +72,7 @@ layout(push_constant, std430) uniform InstanceConstants {
     uint first_surfel;      // of the bound surfels
     uint surfel_count;      // of passes over what setup made of them: how many groups
     uint first_group;       // compute: number of the first of their groups
-    uint first_word;        // compute: where in the cells' masks a segment begins
+    uint first_word;        // compute: where in the cells' masks a segment begins; setup: the first of its sources
 } instance;
 
 #ifdef COPY_UNIFORMS
@@ -90,7 +90,7 @@ struct FrameCopy {
 struct InstanceCopy {
     vec4 model_to_view[3];
     float scale, epsilon_scale;
-    uint flags, first_patch, first_surfel, surfel_count, first_group;
+    uint flags, first_patch, first_surfel, surfel_count, first_group, first_word;
 } instance_copy;
 
 void copy_uniforms() {
@@ -99,7 +99,7 @@ void copy_uniforms() {
                            frame.shininess, frame.rim, frame.rim_exponent);
     instance_copy = InstanceCopy(instance.model_to_view, instance.scale, instance.epsilon_scale, instance.flags,
                                  instance.first_patch, instance.first_surfel, instance.surfel_count,
-                                 instance.first_group);
+                                 instance.first_group, instance.first_word);
 }
 #define frame frame_copy
 #define instance instance_copy

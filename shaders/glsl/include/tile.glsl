@@ -61,6 +61,18 @@ layout(set = 2, binding = 8, std430) buffer SplatList {
 }
 list;
 
+// What each workgroup of setup works on: the first surfel, and how many.
+layout(set = 2, binding = 10, std430) readonly buffer GroupSources {
+    uvec2 group_sources[];
+};
+
+// Of the workgroup with this number of `count`. Software devices give each of their threads a run of workgroups:
+// neighbours, which hold about as much, go to different threads.
+uint turn_of(uint number, uint count) {
+    const uint half_way = (count + 1) / 2;
+    return number < half_way ? 2 * number : 2 * (number - half_way) + 1;
+}
+
 uint cell_count() {
     return tiles.cells_x * tiles.cells_y;
 }

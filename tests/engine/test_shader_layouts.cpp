@@ -182,7 +182,7 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
 
 TEST_CASE("tile uniforms have the layout that the shaders declare") {
     expect_everywhere(SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, false,
-                      {sizeof(TileUniforms),
+                      {offsetof(TileUniforms, padding),
                        {MEMBER(TileUniforms, cells_x), MEMBER(TileUniforms, cells_y), MEMBER(TileUniforms, cell_shift),
                         MEMBER(TileUniforms, words), MEMBER(TileUniforms, segmented), MEMBER(TileUniforms, first_solid),
                         MEMBER(TileUniforms, first_listed)}},

@@ -108,7 +108,9 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             marks |= near ? MARK_NEAR : 0;
             bounds.solid = (marks & ~MARK_SPECK) != 0;
             const vec2 gains = splat.swell * vec2(climb, -climb);
-            bounds.close = near || (bounds.solid && !ORTHOGRAPHIC && min(gains.x, gains.y) < LEAST_GAIN);
+            const bool large = any(greaterThan(own.high - own.low, uvec2(LARGE_SOLID)));
+            bounds.close =
+                near || (bounds.solid && (large || (!ORTHOGRAPHIC && min(gains.x, gains.y) < LEAST_GAIN)));
             imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
             imageStore(records, texel + 2,
                        uvec4(floatBitsToUint(splat.g * to_z), (floatBitsToUint(push) & ~MARKS) | marks,
@@ -123,7 +125,7 @@ PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
             if (DEFERRED || bounds.solid) {
                 const vec3 clip = (marks & MARK_CUT) != 0 ? decode_clip(record.clip) : NO_CLIP;
                 imageStore(records, solid_texel + 1,
-                           pack_last(clip, splat.swell, DEFERRED ? surfel_albedo(record) : vec3(0)));
+                           pack_last(clip, (marks & MARK_SWELL) != 0 ? record.extent & EXTENT_SWELL : 0, DEFERRED ? surfel_albedo(record) : vec3(0)));
             }
         }
     }

@@ -8,7 +8,7 @@
 //   3  colour, its change along u, its change along v but for blue (halves); deferred: the normal instead, its xyz for rgb
 //   4  skew, climb, plane_offset
 //   5  direction of the clip line, red and green of the albedo, its blue (halves) and the clip line's offset (16 bits),
-//      swell (halves); of flat splats the albedo alone, where shading is deferred
+//      swell as format::Surfel stores it; of flat splats the albedo alone, where shading is deferred
 #ifndef SPLICE_SPLAT_RECORD_GLSL
 #define SPLICE_SPLAT_RECORD_GLSL
 
@@ -44,6 +44,8 @@ uvec4 pack_place(vec2 anchor, vec2 reach, float z) {
 //   orthographic  z = z_P + g'.d - h s,  g' = g in depth buffer values a pixel
 // Of what a solid gains towards its axis; tiles leave those that may gain less to another way of meeting them.
 const float LEAST_GAIN = -0.9;
+// Pixels: of larger ones, what is met beside the disk is worth looking for everywhere.
+const uint LARGE_SOLID = 12;
 
 struct SplatPlane {
     vec4 plane_map;
@@ -79,14 +81,14 @@ vec3 unpack_clip(uvec4 last, uint marks) {
 SplatSolid unpack_solid(uvec4 texel, uvec4 last, uint marks) {
     if (is_flat(marks)) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
     const vec3 depths = uintBitsToFloat(texel.xyz);
-    return SplatSolid(depths.xy, depths.z, unpackHalf2x16(last.w), unpackSnorm2x16(texel.w), unpack_clip(last, marks));
+    return SplatSolid(depths.xy, depths.z, decode_extent(last.w).xy, unpackSnorm2x16(texel.w), unpack_clip(last, marks));
 }
 
-// NO_CLIP included. `swell` is rounded up.
-uvec4 pack_last(vec3 clip, vec2 swell, vec3 albedo) {
+// NO_CLIP included. `swell`: EXTENT_SWELL of the record's extent.
+uvec4 pack_last(vec3 clip, uint swell, vec3 albedo) {
     const uint blue = packHalf2x16(vec2(albedo.b, 0)) & 0xffff;
     return uvec4(packSnorm2x16(clip.xy), packHalf2x16(albedo.rg),
-                 blue | uint(round(clip.z * CLIP_OFFSET_STEPS)) << 16, packHalf2x16(swell * (1 + 1.0 / 1024)));
+                 blue | uint(round(clip.z * CLIP_OFFSET_STEPS)) << 16, swell);
 }
 
 struct SplatPaint {

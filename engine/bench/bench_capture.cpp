@@ -85,6 +85,7 @@ json bench_capture(const std::vector<BenchModel>& models, const QualityOptions& 
             CaptureSettings settings;
             settings.width = options.width;
             settings.height = options.height;
+            settings.backend = Backend::kAuto;  // as splice-capture
             settings.camera = view.camera;
             settings.epsilon_scale = options.epsilon_scale;
             settings.sides = options.sides;
@@ -122,6 +123,7 @@ json bench_capture(const std::vector<BenchModel>& models, const QualityOptions& 
         CaptureSettings settings;
         settings.width = options.width;
         settings.height = options.height;
+        settings.backend = Backend::kAuto;
         settings.camera = bench_cameras(hybrid_scene.bounds(), one_view).front().camera;
         const FrameStats warm = renderer.render(hybrid_scene, settings).stats;
         const Timing hybrid_time = time_frames(renderer, hybrid_scene, settings, options.frames);

@@ -63,6 +63,7 @@ json bench_holes(const std::vector<BenchModel>& models, const QualityOptions& op
             CaptureSettings settings;
             settings.width = options.width;
             settings.height = options.height;
+            settings.backend = Backend::kAuto;  // as splice-capture
             settings.camera = view.camera;
             settings.epsilon_scale = options.epsilon_scale;
             settings.sides = options.sides;

@@ -71,7 +71,7 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
     const bool composed = backend.techniques && passes.splats.composes(settings);
     passes.triangle.add(graph, targets, settings, draws,
                         composed ? std::optional(empty_picture(settings.view, background)) : std::nullopt);
-    if (backend.techniques && draws.surfels > 0) {
+    if (backend.techniques && !passes.splats.empty()) {
         const SurfelOwnership ownership = passes.splats.add(graph, bindings, targets, settings);
         if (!composed) passes.surfel_normalise.add(graph, targets, settings, background, ownership);
     } else if (!composed) {

@@ -34,6 +34,8 @@ class SplatPasses {
 
     /// What draws which surfels of the frame. `draws` must live until the frame's graph has been executed.
     void plan(const DrawList& draws, const Techniques& techniques);
+    /// Whether there is anything to draw.
+    bool empty() const { return groups_.empty(); }
     /// Whether the passes finish the picture themselves, over what targets.picture has of triangles; else the normalise
     /// pass does.
     bool composes(const FrameSettings& settings) const;

@@ -229,7 +229,9 @@ void add_part(float part, float weight, float z, vec3 colour, vec3 albedo, int r
 // `lacking`: where next to nothing was painted, what is met beside disks.
 void paint_block(uint block, const int kind, const bool lacking, inout Tile tile) {
     const float column = float(gl_LocalInvocationID.x);
-    const TileSplat mine = read_splat(block, kind, tile);
+    TileSplat mine = read_splat(block, kind, tile);
+    // A filtered speck reaches its pixel anyway, and weighs there what its footprint does.
+    if (mine.speck && frame.prefilter != 0) mine.plane.u = vec3(2, 0, 0);
     const int texel = int(mine.number * RECORD_TEXELS);
     const SplatPaint paint = unpack_paint(mine.splat, texelFetch(record_texels, texel + 3));
     const SplatFilter filtered = filter_of(mine.splat);
@@ -284,7 +286,8 @@ void paint_block(uint block, const int kind, const bool lacking, inout Tile tile
             [[unroll]] for (int row = 0; row < TILE.y; ++row) {
                 const Meeting meeting = meet(at, kind, splat, past_clip);
                 const bool on_disk = meeting.on_disk && at.e > 0;
-                const bool in_footprint = ellipse < KERNEL_SUPPORT2 && (kind == FLAT || past_clip <= half_pixel);
+                const bool kept = kind == FLAT || (at.e < 0 ? -past_clip : past_clip) <= half_pixel;
+                const bool in_footprint = ellipse < KERNEL_SUPPORT2 && kept;
                 float met_z = meeting.z / meeting.share;
                 vec2 nearest = meeting.nearest;
                 if (kind == CLOSE_SOLID && in_footprint && meeting.beside_disk) {
@@ -295,7 +298,9 @@ void paint_block(uint block, const int kind, const bool lacking, inout Tile tile
                 const float across = affine ? meeting.distance2 : dot(nearest, nearest);
                 const float scale = at.e > 0 ? inversesqrt(larger(across, at.e * at.e)) : 0;
                 if (!affine) bent = cu * nearest.x + cv * nearest.y;
-                const float exponent = smaller(on_disk ? meeting.distance2 * scale * scale : KERNEL_SUPPORT2, ellipse);
+                // The polynomial may fall below 0 by rounding.
+                const float exponent =
+                    larger(smaller(on_disk ? meeting.distance2 * scale * scale : KERNEL_SUPPORT2, ellipse), 0);
                 const float z = smaller(larger(met_z, z_ends.x), z_ends.y);
                 bool reached = lacking ? meeting.beside_disk && tile.lacks[row]
                                        : on_disk || meeting.beside_disk || in_footprint;
@@ -358,7 +363,7 @@ void paint(const int kind, const bool lacking, uint blocks, inout Tile tile) {
 }
 
 // Of solids mostly the disks show: what is met beside them weighs so little that it is looked for only where all else
-// does, too. Elsewhere less than a hundredth of the colour is left out.
+// does, too. Elsewhere each of them would change less than a hundredth of the colour.
 const float ENOUGH_WEIGHT = 100 * BESIDE_WEIGHT;
 const bool PAINT_DISKS_FIRST = SOLIDS == SOLID && VIEW != VIEW_OVERLAP;
 

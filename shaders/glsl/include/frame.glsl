@@ -90,7 +90,7 @@ struct FrameCopy {
 struct InstanceCopy {
     vec4 model_to_view[3];
     float scale, epsilon_scale;
-    uint flags, first_patch, first_surfel, surfel_count, first_group, first_word;
+    uint flags, first_patch, surfel_count, first_group, first_word;
 } instance_copy;
 
 void copy_uniforms() {
@@ -98,7 +98,7 @@ void copy_uniforms() {
                            frame.sample_share, frame.sample_radius, frame.ambient, frame.light_count, frame.specular,
                            frame.shininess, frame.rim, frame.rim_exponent);
     instance_copy = InstanceCopy(instance.model_to_view, instance.scale, instance.epsilon_scale, instance.flags,
-                                 instance.first_patch, instance.first_surfel, instance.surfel_count,
+                                 instance.first_patch, instance.surfel_count,
                                  instance.first_group, instance.first_word);
 }
 #define frame frame_copy

@@ -39,14 +39,14 @@ uvec4 pack_place(vec2 anchor, vec2 reach, float z) {
     return uvec4(floatBitsToUint(anchor), packHalf2x16(reach * (1 + 1.0 / 512) + 1.0 / 64), floatBitsToUint(z));
 }
 
-// Depth buffer values are encode_depth's, linear in the pixel along a plane:
-//   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
-//   orthographic  z = z_P + g'.d - h s,  g' = g in depth buffer values a pixel
 // Of what a solid gains towards its axis; tiles leave those that may gain less to another way of meeting them.
 const float LEAST_GAIN = -0.9;
 // Pixels: of larger ones, what is met beside the disk is worth looking for everywhere.
 const uint LARGE_SOLID = 12;
 
+// Depth buffer values are encode_depth's, linear in the pixel along a plane:
+//   perspective   z = z_P e / (1 + h),  h = what the ray gains towards the solid's axis; pushed back: 1/z grows
+//   orthographic  z = z_P + g'.d - h s,  g' = g in depth buffer values a pixel
 struct SplatPlane {
     vec4 plane_map;
     vec2 g;

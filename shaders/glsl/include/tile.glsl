@@ -23,7 +23,9 @@ const uint GROUP = 64;           // surfels
 const uint BLOCK = 8;            // splats
 const uint RECORD_TEXELS = 4;    // splat_record.glsl; solids have one more
 const uint SEGMENT_WORDS = 24;   // of a cell's mask
-const uint FUSED_GROUPS = 416;   // groups of a cell that is gathered at once
+// Groups of a cell that is gathered at once: finding the blocks of a group, and seeing, painting and painting what lacks of
+// each of its splats, takes up to 1 + 3 (1 + 8 + 1/8) BLOCKS rounds of loops, some 220; of less than 65,535.
+const uint FUSED_GROUPS = 288;
 const uint BLOCKS = GROUP / BLOCK;
 
 layout(set = 2, binding = 0, std140) uniform TileUniforms {

@@ -63,7 +63,6 @@ Meeting meet_close_solid(PixelPlane at, TileSolid solid, float at_clip) {
 // With k = G e / (1 + G), of G above LEAST_GAIN, the solid is met where |(u, v) + k skew| <= e - k and past_clip + k clip_change
 // <= 0, at the depth buffer value z (e - k): affine in k, as all of it is in parallel projection.
 struct TileAxis {
-    vec3 past_clip;
     vec2 skew;
     float steepness;  // |skew|^2
     vec2 ends;        // least and largest k, over e
@@ -76,7 +75,6 @@ const float NO_BOUND = 1e9;
 
 TileAxis axis_in_tile(TileSolid solid, float z) {
     TileAxis axis;
-    axis.past_clip = solid.past_clip;
     axis.skew = solid.skew;
     axis.steepness = max(dot(solid.skew, solid.skew), 1e-30);
     axis.ends = ORTHOGRAPHIC ? solid.h : solid.h / (1 + solid.h);
@@ -88,7 +86,7 @@ TileAxis axis_in_tile(TileSolid solid, float z) {
 }
 
 TileAxis hand_round(TileAxis mine, uint i) {
-    return TileAxis(subgroupShuffle(mine.past_clip, i), subgroupShuffle(mine.skew, i), subgroupShuffle(mine.steepness, i),
+    return TileAxis(subgroupShuffle(mine.skew, i), subgroupShuffle(mine.steepness, i),
                     subgroupShuffle(mine.ends, i), subgroupShuffle(mine.clip_k, i), subgroupShuffle(mine.clip_ends, i),
                     subgroupShuffle(mine.climb, i));
 }
@@ -101,8 +99,11 @@ Meeting meet_solid(PixelPlane at, TileAxis axis, float past_clip) {
     const float high = min(axis.ends.y * at.e, clip_k + axis.clip_ends.y);
     // Where the ray is nearest the axis; in perspective, where |(u, v) (1 + G) + G e skew| is least.
     const float along = at.u * axis.skew.x + at.v * axis.skew.y;
+    // With the eye inside the cylinder it is beyond the least.
+    const float slope = along + at.e * axis.steepness;
     const float nearest_k = ORTHOGRAPHIC ? -along / axis.steepness
-                                         : -(distance2 + at.e * along) / (along + at.e * axis.steepness);
+                            : slope > 0  ? -(distance2 + at.e * along) / slope
+                                         : -NO_BOUND;
     const float k = min(max(nearest_k, low), high);
     const vec2 nearest = vec2(at.u + k * axis.skew.x, at.v + k * axis.skew.y);
     const float rim = ORTHOGRAPHIC ? 1 : at.e - k;

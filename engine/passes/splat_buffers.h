@@ -23,8 +23,8 @@ inline constexpr std::uint32_t kTileSegmentWords = 24, kTileFusedGroups = 288;
 inline constexpr std::uint32_t kTileCellsGroup = 64;
 
 /// CELLS_* of tile.glsl: lists of cells, each with a dispatch.
-enum class TileCells : std::uint32_t { kFlat, kSolid, kBoth, kClose, kSegmented };
-inline constexpr std::uint32_t kTileCellLists = 5;
+enum class TileCells : std::uint32_t { kOthers, kClose, kSegmented };
+inline constexpr std::uint32_t kTileCellLists = 3;
 
 /// The buffers of one frame as its graph knows them.
 struct SplatHandles {

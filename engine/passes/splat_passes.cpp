@@ -291,7 +291,7 @@ void SplatPasses::add_gather(graph::Graph& graph, FrameTargets& targets, const F
     targets.splat_depth = pass.storage_write(targets.splat_depth, graph::Contents::discard());
     if (composed) targets.picture = pass.storage_write(targets.picture, graph::Contents::keep());
     pass.record([this, &settings, composed](const graph::PassContext& context) {
-        for (const TileCells cells : {TileCells::kFlat, TileCells::kSolid, TileCells::kBoth, TileCells::kClose}) {
+        for (const TileCells cells : {TileCells::kOthers, TileCells::kClose}) {
             programs_.bind(context, Stage::kTileGather, settings, {.composes = composed, .cells = cells});
             vkCmdDispatchIndirect(context.commands, context.buffer(handles_.cells), tile_dispatch(cells));
         }

@@ -32,7 +32,7 @@ class SplatPrograms {
         bool composes = false;  // tiles become the picture
         bool mixed = false;     // several techniques serve the frame
         bool adds = false;      // point sums: to what is there
-        TileCells cells = TileCells::kBoth;
+        TileCells cells = TileCells::kOthers;
         auto operator<=>(const Variant&) const = default;
     };
 

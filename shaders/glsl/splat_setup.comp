@@ -184,7 +184,6 @@ void main() {
             group_bounds.high = max(group_bounds.high, bounds.high);
             if (block == lane && bounds.low.x < bounds.high.x)
                 own_block = bounds.low | bounds.high << 16 | uvec2(solid ? BLOCK_SOLID : 0, 0);
-            cell_marks |= bounds.low.x >= bounds.high.x ? 0 : (solid ? CELL_HAS_SOLID : CELL_HAS_FLAT);
             cell_marks |= subgroupBallot(bounds.close).x != 0 ? CELL_HAS_CLOSE : 0;
             ++block;
         } while (block * BLOCK < kept);

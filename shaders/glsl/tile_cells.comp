@@ -15,9 +15,6 @@ void main() {
     if (marks == 0 && tiles.segmented == 0) return;
     uint kind = CELLS_SEGMENTED;
     if (tiles.segmented == 0 && groups_of_cell(cell) <= FUSED_GROUPS)
-        kind = (marks & CELL_HAS_CLOSE) != 0   ? CELLS_CLOSE
-               : (marks & CELL_HAS_SOLID) == 0 ? CELLS_FLAT
-               : (marks & CELL_HAS_FLAT) == 0  ? CELLS_SOLID
-                                               : CELLS_BOTH;
+        kind = (marks & CELL_HAS_CLOSE) != 0 ? CELLS_CLOSE : CELLS_OTHERS;
     cells[(1 + kind) * count + atomicAdd(dispatch[kind].y, 1)] = place;
 }

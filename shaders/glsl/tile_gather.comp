@@ -37,7 +37,7 @@ const uint PART_VISIBILITY = 1;
 const uint PART_ATTRIBUTES = 2;
 
 // Which of CELLS_* the cell is of.
-layout(constant_id = 7) const uint CELLS = CELLS_BOTH;
+layout(constant_id = 7) const uint CELLS = CELLS_OTHERS;
 
 // Whether other backends draw splats of the same frame: visibility begins with what they found visible, and when it
 // comes to attributes, the frame's depth is that of all.
@@ -77,7 +77,7 @@ Found find_blocks(uint cell, uint first_word, uint end_word, uvec2 corner) {
                     const uvec2 bounds = texelFetch(block_texels, int(block)).xy;
                     const uvec2 low = bounds & uvec2(0x7fff, 0xffff), high = bounds >> 16;
                     const bool touches = all(lessThan(low, corner + TILE)) && all(greaterThan(high, corner));
-                    const bool solid = CELLS == CELLS_SOLID || (CELLS != CELLS_FLAT && (bounds.x & BLOCK_SOLID) != 0);
+                    const bool solid = (bounds.x & BLOCK_SOLID) != 0;
                     const uvec4 flat_touching = subgroupBallot(touches && !solid);
                     const uvec4 solid_touching = subgroupBallot(touches && solid);
                     const uint place =
@@ -412,13 +412,13 @@ void main() {
     const uint end_word = groups_of_cell(cell) == 0 ? first_word : last_word;
     const Found found = find_blocks(cell, first_word, end_word, tile.corner);
     if (PART != PART_ATTRIBUTES) {
-        if (CELLS != CELLS_SOLID) see(FLAT, found.flat_blocks, tile);
-        if (CELLS != CELLS_FLAT) see(SOLIDS, found.solid_blocks, tile);
+        see(FLAT, found.flat_blocks, tile);
+        see(SOLIDS, found.solid_blocks, tile);
     }
     if (PART != PART_VISIBILITY) {
         own(tile);
-        if (CELLS != CELLS_SOLID) paint(FLAT, false, found.flat_blocks, tile);
-        if (CELLS != CELLS_FLAT) paint_solids(found.solid_blocks, tile);
+        paint(FLAT, false, found.flat_blocks, tile);
+        paint_solids(found.solid_blocks, tile);
     }
     const bool ends = PART == PART_ALL || (instance.flags & INSTANCE_LAST_SEGMENT) != 0;
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {

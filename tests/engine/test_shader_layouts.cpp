@@ -206,7 +206,7 @@ TEST_CASE("surfels have the layout that splat_setup.comp reads as texels") {
 
 TEST_CASE("the cells of tiles have the layout that the shaders declare") {
     expect_everywhere(SPVC_RESOURCE_TYPE_STORAGE_BUFFER, false,
-                      {kTileCellList, {tile_dispatch(TileCells::kFlat), kTileCellList}}, 2, 5);
+                      {kTileCellList, {tile_dispatch(TileCells::kOthers), kTileCellList}}, 2, 5);
 }
 
 TEST_CASE("the list of splats has the layout that the shaders declare") {
@@ -239,7 +239,7 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     CHECK(constant("include/tile.glsl", "RECORD_TEXELS") == kTileRecordTexels);
     CHECK(constant("include/tile.glsl", "SEGMENT_WORDS") == kTileSegmentWords);
     CHECK(constant("include/tile.glsl", "FUSED_GROUPS") == kTileFusedGroups);
-    CHECK(constant("include/tile.glsl", "CELLS_FLAT") == static_cast<std::uint32_t>(TileCells::kFlat));
+    CHECK(constant("include/tile.glsl", "CELLS_OTHERS") == static_cast<std::uint32_t>(TileCells::kOthers));
     CHECK(constant("include/tile.glsl", "CELLS_SEGMENTED") == static_cast<std::uint32_t>(TileCells::kSegmented));
     CHECK(constant("tile_cells.comp", "local_size_x") == kTileCellsGroup);
     CHECK(static_cast<float>(constant("include/surfel_record.glsl", "EXTENT_POWERS")) == kSwellStep);

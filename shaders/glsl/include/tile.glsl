@@ -11,8 +11,7 @@
 // gathered in segments. Texel buffers, not storage buffers, because software devices read those lane by lane.
 //
 // Such devices also run both sides of a branch, and the body of a loop at least once, whether an invocation is there or
-// not. So what may have nothing to do is a dispatch of its own: tiles of flat splats, of solids, of both; none
-// where there are no splats.
+// not. So cells without splats are not dispatched at all.
 // Needs frame.glsl.
 #ifndef SPLICE_TILE_GLSL
 #define SPLICE_TILE_GLSL
@@ -42,19 +41,17 @@ layout(set = 2, binding = 3, std430) buffer TileMasks {
     uint masks[];
 };  // [cell][word]
 layout(set = 2, binding = 5, std430) buffer TileCells {
-    uvec4 dispatch[5];  // workgroups: tiles of a cell, cells, 1; by CELLS_*
+    uvec4 dispatch[3];  // workgroups: tiles of a cell, cells, 1; by CELLS_*
     uint cells[];  // groups of each, with marks; then, as many again for each of CELLS_*, where they are (x, y: 16 bits
                    // each)
 };
-// Lists of cells: gathered at once, those that hold splats of disks alone, of solids alone, of both, solids that are close
-// to the eye among them; in segments.
-const uint CELLS_FLAT = 0;
-const uint CELLS_SOLID = 1;
-const uint CELLS_BOTH = 2;
-const uint CELLS_CLOSE = 3;
-const uint CELLS_SEGMENTED = 4;
-const uint CELL_HAS_CLOSE = 1 << 29, CELL_HAS_FLAT = 1 << 30, CELL_HAS_SOLID = 1 << 31;
-uint groups_of_cell(uint cell) { return cells[cell] & ~(CELL_HAS_CLOSE | CELL_HAS_FLAT | CELL_HAS_SOLID); }
+// Lists of cells: gathered at once, those with solids that are close to the eye, and all others; in segments. Each is a
+// pipeline, which takes a while to make.
+const uint CELLS_OTHERS = 0;
+const uint CELLS_CLOSE = 1;
+const uint CELLS_SEGMENTED = 2;
+const uint CELL_HAS_CLOSE = 1 << 31;
+uint groups_of_cell(uint cell) { return cells[cell] & ~CELL_HAS_CLOSE; }
 
 // Splats to be rasterised, in the order of their surfels.
 layout(set = 2, binding = 8, std430) buffer SplatList {

@@ -1,4 +1,4 @@
-// Every surfel of a range becomes the record of its splat, once a frame. Most surfels of a frame are
+// Every surfel of the groups that the frame lists becomes the record of its splat, once a frame. Most surfels of a frame are
 // cheap to reject: a workgroup, which is one subgroup, first finds which of its group are not, then works on those with
 // all of its invocations.
 #version 460

@@ -1,5 +1,5 @@
 // Solids of splats (splat.glsl) in the coordinates of a tile. Two ways to meet them: meet_close_solid computes what
-// cast_ray does; meet_solid needs no division, but nothing may be near the eye. Needs tile_plane.glsl.
+// cast_ray does; meet_solid does with one division, but nothing may be near the eye. Needs tile_plane.glsl.
 #ifndef SPLICE_TILE_SOLID_GLSL
 #define SPLICE_TILE_SOLID_GLSL
 

@@ -25,9 +25,6 @@ namespace {
 // others are at least this near.
 constexpr int kSteps = 1;
 constexpr double kOddShare = 5e-4;
-// Thick disks at random form no surface: at some pixels the plane of a disk lies behind what is visible and the side of
-// its solid does not. Tiles leave it out where others were painted (tile_gather.comp, lacks), sprites cannot know.
-constexpr double kRandomOddShare = 1.5e-3;
 constexpr double kLeastPsnr = 60;
 
 struct BackendCase {
@@ -37,7 +34,6 @@ struct BackendCase {
     bool two_sided = false;
     std::uint32_t width = 203, height = 150;  // pixels; no multiples of a tile
     bool mixed = false;                       // points and another backend must both be in use
-    double odd_share = kOddShare;
 };
 
 std::vector<Disk> thick(std::vector<Disk> disks) {
@@ -103,10 +99,9 @@ std::vector<BackendCase> backend_cases() {
         {"disks of a tenth of a pixel",
          [&](HandmadeModel& m) { m.add_surfels(wall(-40, 60, kRed)).add_surfels(scattered(2000, 4e-4f, 1e-2f, 1)); },
          eye, true},
-        {"disks of all sizes", [&](HandmadeModel& m) { m.add_surfels(scattered(3000, 1e-3f, 1, 2)); }, eye, true, 203,
-         150, false, kRandomOddShare},
+        {"disks of all sizes", [&](HandmadeModel& m) { m.add_surfels(scattered(3000, 1e-3f, 1, 2)); }, eye, true},
         {"disks of all sizes, parallel rays", [&](HandmadeModel& m) { m.add_surfels(scattered(3000, 1e-3f, 1, 2)); },
-         parallel(eye, 3), true, 203, 150, false, kRandomOddShare},
+         parallel(eye, 3), true},
         {"small disks between large ones",
          [&](HandmadeModel& m) {
              m.add_surfels(wall(-2, 60, kRed))
@@ -182,7 +177,7 @@ bool drew(const Frame& frame, Backend backend) {
 }
 
 // Every backend against the sprites.
-void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings settings, double odd_share = kOddShare) {
+void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings settings) {
     settings.backend = Backend::kSprite;
     const Frame sprite = renderer.render(scene, settings);
     CHECK(sprite.stats.backend == Backend::kSprite);
@@ -194,7 +189,7 @@ void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings set
         CHECK(frame.stats.surfels_drawn == sprite.stats.surfels_drawn);
         const Difference off = difference(sprite.rgba, frame.rgba);
         CAPTURE(off.largest, off.odd_share, off.psnr);
-        CHECK(off.odd_share <= odd_share);
+        CHECK(off.odd_share <= kOddShare);
         CHECK(off.psnr >= kLeastPsnr);
         CHECK(renderer.render(scene, settings).rgba == frame.rgba);
     }
@@ -214,7 +209,7 @@ TEST_CASE("backends and sprites agree on handmade scenes") {
             settings.height = each.height;
             settings.camera = each.camera;
             settings.clip_to_scene = false;
-            check_agreement(renderer, scene, settings, each.odd_share);
+            check_agreement(renderer, scene, settings);
             if (each.mixed) {
                 for (const Variant& variant : {Variant{Backend::kTile, 10}, Variant{Backend::kRaster, 10}}) {
                     choose(settings, variant);
@@ -225,10 +220,10 @@ TEST_CASE("backends and sprites agree on handmade scenes") {
                 }
             }
             settings.shading = Shading::kDeferred;
-            check_agreement(renderer, scene, settings, each.odd_share);
+            check_agreement(renderer, scene, settings);
             settings.prefilter = false;
             settings.shading = Shading::kSurfel;
-            check_agreement(renderer, scene, settings, each.odd_share);
+            check_agreement(renderer, scene, settings);
         }
     }
 }
@@ -342,15 +337,16 @@ TEST_CASE("frames too large for one batch, and cells too full for one go") {
 TEST_CASE("a cell full of thick disks leaves none out") {
     // 22,400 disks are 350 groups, all of which touch the same tiles: more loops than some drivers allow at once.
     std::vector<Disk> disks = scattered(22400, 0.03f, 0.04f, 0.01f);
+    // Seen nearly edge-on, most of what shows is the sides of solids.
     for (Disk& disk : disks)
-        disk.normal.z = 2;
+        disk.normal = {0.02f, 1, 0.02f};
     HandmadeModel model(true);
     model.add_surfels(thick(disks));
     Renderer renderer({});
     CaptureSettings settings;
     settings.width = settings.height = 64;
     settings.camera = looking_down_z();
-    check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings, kRandomOddShare);
+    check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
 }
 
 TEST_CASE("backends and sprites agree on kernels") {

@@ -40,7 +40,7 @@ TEST_CASE("resources take whole pages: small ones of 4 KiB, large ones of 64 KiB
     CHECK(needs[4].size == 8192);
 }
 
-TEST_CASE("placed bytes lie between the lower bound and no aliasing; the plan's own figures agree") {
+TEST_CASE("placed bytes lie between the lower bound and no aliasing, the plan's own figures agree") {
     for (const bench::Family& family : bench::families()) {
         for (const bool alias : {true, false}) {
             INFO(family.name << (alias ? "" : ", not aliased"));

@@ -27,7 +27,7 @@ TEST_CASE("PCD: packed colours and normals") {
     CHECK(parse_pcd(seed("pcd/ascii_float_rgb.pcd"), "x").colours.at(0) == rgb(0xff, 0, 0));
 }
 
-TEST_CASE("LZF: copies may overlap what they write; damage is found") {
+TEST_CASE("LZF: copies may overlap what they write, damage is found") {
     using namespace std::string_literals;
     CHECK(decompress_lzf("\0a\x20\0"s, 4) == "aaaa");              // a, then three more from one back
     CHECK(decompress_lzf("\1ab\xe0\1\1"s, 12) == "abababababab");  // the long form: 7 + 1 + 2

@@ -50,7 +50,7 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
-TEST_CASE("levels of detail: by the command line, else by the scene; budgets and costs are in the statistics") {
+TEST_CASE("levels of detail: by the command line, else by the scene, budgets and costs are in the statistics") {
     const TemporaryFolder folder;
     // Two colours that blend where they meet, by the kernel.
     HandmadeModel model;

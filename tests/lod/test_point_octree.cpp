@@ -221,7 +221,7 @@ TEST_CASE("points that halve their distance again and again, or coincide, end") 
     CHECK(bounds_that_fail(nodes, surfels).ellipse == 0);
 }
 
-TEST_CASE("no surfels, no tree; the tree does not depend on the threads") {
+TEST_CASE("no surfels, no tree, the tree does not depend on the threads") {
     std::vector<Surfel> none;
     CHECK(build_point_octree(none).empty());
     std::vector<Surfel> many = bumpy_sphere(30000, 4), alone = many;

@@ -58,7 +58,7 @@ TEST_CASE("OBJ line ends: CRLF, lone CR, none at the end, byte order mark, tabs,
     }
 }
 
-TEST_CASE("OBJ vertex colours, as fractions or bytes; a weight is no colour") {
+TEST_CASE("OBJ vertex colours, as fractions or bytes, a weight is no colour") {
     const SourceMesh fractions = obj("v 0 0 0 1 0 0.5\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n");
     REQUIRE(fractions.corner_colours.size() == 3);
     CHECK(fractions.corner_colours[0] == 0xff8000ffu);
@@ -139,7 +139,7 @@ TEST_CASE("OBJ materials: colours, textures with blanks in their names, first de
     CHECK_THAT(mesh.warnings[0], Catch::Contains("unknown"));
 }
 
-TEST_CASE("OBJ files that leave the mesh's folder are refused, missing ones reported; the mesh is read all the same") {
+TEST_CASE("OBJ files that leave the mesh's folder are refused, missing ones reported, the mesh is read all the same") {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "inner");
     write(folder / "outside.mtl", "newmtl m\nKd 0 0 0\n");
@@ -158,7 +158,7 @@ TEST_CASE("OBJ files that leave the mesh's folder are refused, missing ones repo
     CHECK_THAT(read_mesh_file(folder / "mesh.obj").warnings.at(0), Catch::Contains("nowhere.mtl\" not found"));
 }
 
-TEST_CASE("OBJ normals are looked up per corner; bad references leave them missing") {
+TEST_CASE("OBJ normals are looked up per corner, bad references leave them missing") {
     const SourceMesh mesh = obj(std::string(kThreeVertices) + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//2 3//7\n");
     REQUIRE(mesh.corner_normals.size() == 3);
     CHECK(mesh.corner_normals[0] == Vec3f(0, 0, 1));

@@ -293,7 +293,7 @@ TEST_CASE("Nothing left is an error that says why") {
     CHECK_THAT(input_error([] { repaired(source({{0, 0, 0}}, {})); }), Catch::Contains("no faces"));
 }
 
-TEST_CASE("Materials and attributes follow their triangles; bad ones are made harmless") {
+TEST_CASE("Materials and attributes follow their triangles, bad ones are made harmless") {
     SourceMesh mesh =
         source({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}}, {{0, 1, 2, 3}, {0, 0, 1}, {1, 4, 2}});
     mesh.materials.resize(2);

@@ -110,7 +110,7 @@ TEST_CASE("a click is one without a drag, and tells its place in the picture") {
     CHECK_FALSE(hand.navigation.take_click());
 }
 
-TEST_CASE("a double click sets the pivot to the surface; two slow or distant clicks do not") {
+TEST_CASE("a double click sets the pivot to the surface, two slow or distant clicks do not") {
     Hand hand;
     hand.surface = glm::dvec3(0.2, 0.3, 0.4);
     const auto click = [&](double time, double x) {

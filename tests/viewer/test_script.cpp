@@ -54,7 +54,7 @@ TEST_CASE("the two presses of a double click are close in time, those of two cli
     CHECK(event(apart[4]).time - event(apart[1]).time > 0.5);
 }
 
-TEST_CASE("commands keep their words; quotes hold blanks together; # starts a comment") {
+TEST_CASE("commands keep their words, quotes hold blanks together, # starts a comment") {
     const auto steps = parse(
         "# a tour\n\n  open \"a b.ply\" c.obj  # both\nset background #ff0000\n"
         "set background \"#ff0000\"\nwait\nframes 12\n");

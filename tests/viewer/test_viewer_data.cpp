@@ -225,7 +225,7 @@ TEST_CASE("bookmarks need names of their own and placed cameras") {
     CHECK_THROWS_WITH(parse(R"([{"name": "a", "camera": {"azimuth": 3}}])"), Catch::Contains("/bookmarks/0/camera"));
 }
 
-TEST_CASE("shaders compile within the program; mistakes are told with file and line") {
+TEST_CASE("shaders compile within the program, mistakes are told with file and line") {
     const std::filesystem::path folder = test::source_file("shaders/glsl");
     const auto words = compile_shader(folder / "triangle.frag", folder / "include");
     REQUIRE(words.size() > 100);

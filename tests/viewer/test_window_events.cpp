@@ -37,7 +37,7 @@ std::pair<int, std::string> run_script(const test::TemporaryFolder& folder, cons
 
 }  // namespace
 
-TEST_CASE("a lost device is opened again once; the second loss ends the run") {
+TEST_CASE("a lost device is opened again once, the second loss ends the run") {
     const auto display = test::VirtualDisplay::start();
     if (!display) return;
     const test::TemporaryFolder folder;
@@ -122,7 +122,7 @@ TEST_CASE("as small as a window gets, it waits and comes back") {
     CHECK(read_png(folder / "a.png").width == read_png(folder / "b.png").width);
 }
 
-TEST_CASE("minimised, it draws nothing; what was asked for meanwhile is there once it is back") {
+TEST_CASE("minimised, it draws nothing, what was asked for meanwhile is there once it is back") {
     const auto display = test::VirtualDisplay::start();
     if (!display) return;
     const test::TemporaryFolder folder;

@@ -48,7 +48,7 @@ TEST_CASE("allocations of a block never overlap, respect alignment and are reuse
     CHECK(allocator.statistics().blocks == blocks);
 }
 
-TEST_CASE("large allocations get a block of their own, which goes with them; images and buffers never share one") {
+TEST_CASE("large allocations get a block of their own, which goes with them, images and buffers never share one") {
     const gpu::Instance instance;
     gpu::Device device(instance);
     gpu::MemoryAllocator allocator(device.physical(), device.handle(), 1 << 16);

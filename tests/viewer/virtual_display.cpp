@@ -69,11 +69,21 @@ Window find_titled(Display* display, Window parent, const std::string& end) {
     return found;
 }
 
+XEvent client_message(Display* display, Window window, const char* type) {
+    XEvent event{};
+    event.xclient.type = ClientMessage;
+    event.xclient.window = window;
+    event.xclient.message_type = XInternAtom(display, type, False);
+    event.xclient.format = 32;
+    return event;
+}
+
 }  // namespace
 
 struct VirtualDisplay::Connection {
     Display* display = nullptr;
     Window window = 0;
+    long pings = 0;
     ~Connection() {
         if (display != nullptr) XCloseDisplay(display);
     }
@@ -176,14 +186,50 @@ Picture VirtualDisplay::picture() const {
     return picture;
 }
 
+// Window managers ask like this whether a window still listens (_NET_WM_PING). It answers when it comes to the event,
+// so to all that were sent before, too.
+bool VirtualDisplay::answers_ping(double seconds) const {
+    Display* display = connection_->display;
+    const Window root = DefaultRootWindow(display);
+    const Atom ping = XInternAtom(display, "_NET_WM_PING", False);
+    const long number = ++connection_->pings;
+    XSelectInput(display, root, SubstructureNotifyMask);
+    XEvent event = client_message(display, connection_->window, "WM_PROTOCOLS");
+    event.xclient.data.l[0] = static_cast<long>(ping);
+    event.xclient.data.l[1] = number;
+    event.xclient.data.l[2] = static_cast<long>(connection_->window);
+    XSendEvent(display, connection_->window, False, NoEventMask, &event);
+    bool answered = false;
+    const auto start = Clock::now();
+    while (!answered && since(start) < seconds) {
+        XSync(display, False);
+        while (XPending(display) > 0) {
+            XNextEvent(display, &event);
+            answered =
+                answered || (event.type == ClientMessage && event.xclient.window == root &&
+                             event.xclient.data.l[0] == static_cast<long>(ping) && event.xclient.data.l[1] == number);
+        }
+        if (!answered) sleep_seconds(0.002);
+    }
+    XSelectInput(display, root, NoEventMask);
+    return answered;
+}
+
+bool VirtualDisplay::caught_up(double seconds) const {
+    // When the second comes, what the loop did after the first is done.
+    return answers_ping(seconds) && answers_ping(seconds);
+}
+
 Picture VirtualDisplay::picture_when(const std::function<bool(const Picture&)>& wanted, double seconds) const {
     const auto start = Clock::now();
+    caught_up(seconds);
     Picture last = picture();
-    // Longer than the viewer takes to draw a moving picture whole again.
-    constexpr int still_for = 6;
+    constexpr int still_for = 2;
     int still = 0;
     while (since(start) < seconds) {
-        sleep_seconds(0.2);
+        // Longer than the viewer waits after a move until it draws the picture whole again; then it has drawn it.
+        sleep_seconds(0.3);
+        caught_up(seconds);
         Picture now = picture();
         still = difference(last, now) == 0 ? still + 1 : 0;
         last = std::move(now);
@@ -273,16 +319,10 @@ bool VirtualDisplay::drop(const std::filesystem::path& file, int x, int y) {
 
 void VirtualDisplay::ask_to_close() {
     Display* display = connection_->display;
-    XClientMessageEvent event{};
-    event.type = ClientMessage;
-    event.window = connection_->window;
-    event.message_type = XInternAtom(display, "WM_PROTOCOLS", False);
-    event.format = 32;
-    event.data.l[0] = static_cast<long>(XInternAtom(display, "WM_DELETE_WINDOW", False));
-    event.data.l[1] = CurrentTime;
-    XEvent sent{};
-    sent.xclient = event;
-    XSendEvent(display, connection_->window, False, NoEventMask, &sent);
+    XEvent event = client_message(display, connection_->window, "WM_PROTOCOLS");
+    event.xclient.data.l[0] = static_cast<long>(XInternAtom(display, "WM_DELETE_WINDOW", False));
+    event.xclient.data.l[1] = CurrentTime;
+    XSendEvent(display, connection_->window, False, NoEventMask, &event);
     settle();
 }
 

@@ -28,7 +28,11 @@ class VirtualDisplay {
     bool wait_for_title(const std::string& title, double seconds = 60) const;
     /// Of the window, without borders, as shown.
     Picture picture() const;
-    /// The picture once `wanted` likes it and it stands still, or the last one after so many seconds.
+    /// True once the window has taken note of all input so far and has gone through its loop since; false if it does
+    /// not say so in time.
+    bool caught_up(double seconds = 90) const;
+    /// The picture once `wanted` likes it and it stands still, or the last one after so many seconds. A window that is
+    /// busy does not stand still.
     Picture picture_when(const std::function<bool(const Picture&)>& wanted, double seconds = 90) const;
     /// Once it stands still.
     Picture still_picture() const;
@@ -52,6 +56,7 @@ class VirtualDisplay {
     struct Connection;
     VirtualDisplay() = default;
     void settle(double seconds = 0.05) const;
+    bool answers_ping(double seconds) const;
 
     int server_ = -1;  // process
     std::string name_;

@@ -32,6 +32,8 @@ struct Renderer::Implementation {
 
     // What becomes of the picture: passes that read it.
     using UsePicture = std::function<void(graph::Bindings&, graph::ImageHandle)>;
+    static FrameSettings frame_settings(const CaptureSettings& settings, const Camera& camera, View view,
+                                        const Lighting& lighting);
     void draw(const Scene& scene, const CaptureSettings& settings, const Camera& camera, View view,
               const UsePicture& use_picture, FrameStats* stats);
     std::vector<std::byte> render_raw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
@@ -136,20 +138,26 @@ void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
                                   .name = "pixels"});
 }
 
+FrameSettings Renderer::Implementation::frame_settings(const CaptureSettings& settings, const Camera& camera, View view,
+                                                       const Lighting& lighting) {
+    const std::uint32_t antialias = is_numeric(view) ? 1 : settings.antialias;
+    return {.width = settings.width * antialias,
+            .height = settings.height * antialias,
+            .antialias = antialias,
+            .camera = camera,
+            .view = view,
+            .epsilon_scale = settings.epsilon_scale,
+            .prefilter = settings.prefilter,
+            .kernel = settings.kernel,
+            .shading = settings.shading,
+            .lighting = lighting_flags(lighting)};
+}
+
 void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& settings, const Camera& camera,
                                     View view, const UsePicture& use_picture, FrameStats* stats) {
     const auto start = Clock::now();
-    const std::uint32_t antialias = is_numeric(view) ? 1 : settings.antialias;
-    const FrameSettings frame{.width = settings.width * antialias,
-                              .height = settings.height * antialias,
-                              .antialias = antialias,
-                              .camera = camera,
-                              .view = view,
-                              .epsilon_scale = settings.epsilon_scale,
-                              .prefilter = settings.prefilter,
-                              .kernel = settings.kernel,
-                              .shading = settings.shading,
-                              .lighting = lighting_flags(scene.lighting)};
+    const FrameSettings frame = frame_settings(settings, camera, view, scene.lighting);
+    const std::uint32_t antialias = frame.antialias;
     const SurfelBackend backend = choose_backend(settings.backend, settings.points_below, passes, frame);
     const DrawListOptions list_options{
         .sides = settings.sides,
@@ -172,10 +180,12 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     const auto gathered = Clock::now();
     passes.data.update(frame, scene.lighting, scene.background);
 
-    graph.clear();
-    graph::Bindings bindings;
-    use_picture(bindings, add_frame(graph, bindings, passes, backend, frame, scene.background, draws));
-    device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
+    do {
+        graph.clear();
+        graph::Bindings bindings;
+        use_picture(bindings, add_frame(graph, bindings, passes, backend, frame, scene.background, draws));
+        device.submit_and_wait([&](VkCommandBuffer commands) { executor.execute(graph, bindings, commands); });
+    } while (passes.splats.make_lacking());
 
     if (!stats) return;
     stats->frame_ms = milliseconds(start, Clock::now());
@@ -220,6 +230,17 @@ Renderer::~Renderer() = default;
 
 std::shared_ptr<const GpuModel> Renderer::load(const ModelView& model, const Paging& paging) {
     return std::make_shared<const GpuModel>(implementation_->device, model, paging);
+}
+
+void Renderer::make_for(const CaptureSettings& settings, const Lighting& lighting) {
+    Implementation& engine = *implementation_;
+    const FrameSettings frame = Implementation::frame_settings(settings, settings.camera, settings.view, lighting);
+    const SurfelBackend backend = choose_backend(settings.backend, settings.points_below, engine.passes, frame);
+    if (backend.techniques) engine.passes.splats.make_for(frame, *backend.techniques);
+}
+
+void Renderer::make_ahead() {
+    implementation_->passes.splats.make_ahead();
 }
 
 Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {

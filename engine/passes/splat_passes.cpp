@@ -1,6 +1,7 @@
 #include "engine/passes/splat_passes.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace splice {
@@ -67,6 +68,11 @@ InstanceConstants range_constants(const GroupRange& range) {
     return constants;
 }
 
+// Pictures of numbers and samples, and those that are lit afterwards, tiles leave to other passes.
+bool can_compose(const FrameSettings& settings) {
+    return !is_numeric(settings.view) && settings.antialias == 1 && !is_deferred(settings);
+}
+
 std::uint64_t point_bytes(const FrameSettings& settings) {
     const std::uint64_t channels = is_deferred(settings) ? 8 : 4;
     return std::uint64_t{settings.width} * settings.height * channels * kPointSumBytes;
@@ -81,6 +87,7 @@ SplatPasses::SplatPasses(gpu::Device& device, const FrameData& data, std::uint64
       tiles_supported_(supports_targets(device)),
       buffers_(device),
       programs_(device, data, buffers_),
+      left_out_(device, programs_),
       raster_(device, data, buffers_),
       depth_(device, data) {}
 
@@ -103,9 +110,9 @@ double SplatPasses::default_points_below(Backend wanted) const {
     return wanted == Backend::kAuto && !device_.info().is_cpu() ? kPointPixels : 0;
 }
 
-// Only tiles can; pictures of numbers and samples, and those that are lit afterwards, they leave alone.
+// Only tiles can.
 bool SplatPasses::composes(const FrameSettings& settings) const {
-    return !is_mixed() && !is_numeric(settings.view) && settings.antialias == 1 && !is_deferred(settings);
+    return !is_mixed() && can_compose(settings);
 }
 
 bool SplatPasses::uses(Technique technique) const {
@@ -139,22 +146,28 @@ SurfelOwnership SplatPasses::add(graph::Graph& graph, graph::Bindings& bindings,
                            .deferred = is_deferred(settings),
                            .points = points});
     summed_ = false;
-    return is_mixed() ? add_mixed(graph, targets, settings) : add_tiles(graph, targets, settings);
+    left_out_.begin_whole();
+    return is_mixed() ? add_mixed(graph, targets, settings) : add_tiles(graph, bindings, targets, settings);
 }
 
-SurfelOwnership SplatPasses::add_tiles(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
+SurfelOwnership SplatPasses::add_tiles(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
+                                       const FrameSettings& settings) {
     const Variant variant{.composes = composes(settings), .cells = TileCells::kSegmented};
     if (batches_.size() == 1) {
         const SplatBatch& batch = batches_.front();
+        make_gathering(settings, composes(settings));
         add_setup(graph, settings, batch);
+        // No cell can hold too much for one go unless the frame does.
+        const bool segments =
+            batch.groups > kTileFusedGroups && !left_out_.begin(graph, bindings, handles_.cells, settings, variant);
         if (!composes(settings)) add_sum_clear(graph, targets, settings);
         add_gather(graph, targets, settings);
-        // No cell can hold too much for one go unless the frame does.
-        if (batch.groups > kTileFusedGroups)
+        if (segments)
             add_segments(graph, targets, settings, {Stage::kTileVisibility, Stage::kTileAttributes}, {true, true},
                          variant);
         return SurfelOwnership::kWeight;
     }
+    programs_.make_together(settings, segment_programs(variant));
     // All visibility before all attributes: every batch is set up twice, so that one batch's room is enough.
     for (const Stage stage : {Stage::kTileVisibility, Stage::kTileAttributes})
         for (const SplatBatch& batch : batches_) {
@@ -165,9 +178,23 @@ SurfelOwnership SplatPasses::add_tiles(graph::Graph& graph, FrameTargets& target
     return SurfelOwnership::kWeight;
 }
 
+void SplatPasses::make_gathering(const FrameSettings& settings, bool composed) {
+    const std::array<SplatPrograms::Program, 3> programs{
+        {{Stage::kTileGather, {.composes = composed, .cells = TileCells::kOthers}},
+         {Stage::kTileGather, {.composes = composed, .cells = TileCells::kClose}},
+         {Stage::kSetup, {}}}};
+    programs_.make_together(settings, programs);
+}
+
+void SplatPasses::make_for(const FrameSettings& settings, const Techniques& techniques) {
+    if (techniques.others != Technique::kTile) return;
+    make_gathering(settings, can_compose(settings));
+}
+
 SurfelOwnership SplatPasses::add_mixed(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings) {
     const Variant variant{.mixed = true, .cells = TileCells::kSegmented};
     const bool tiles = uses(Technique::kTile), points = uses(Technique::kPoint);
+    if (tiles) programs_.make_together(settings, segment_programs(variant));
     if (tiles || points) add_point_clear(graph, targets);
     for (const SplatBatch& batch : batches_) {
         add_setup(graph, settings, batch);

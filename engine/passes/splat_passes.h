@@ -6,6 +6,7 @@
 #pragma once
 
 #include "engine/passes/frame_targets.h"
+#include "engine/passes/left_out_cells.h"
 #include "engine/passes/raster_passes.h"
 #include "engine/passes/splat_buffers.h"
 #include "engine/passes/splat_depth_pass.h"
@@ -43,6 +44,13 @@ class SplatPasses {
     /// executed. No submitted work may still use the frame before.
     SurfelOwnership add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
                         const FrameSettings& settings);
+    /// After the frame was executed: whether some of it was left out, what that lacked being made now. Then it is to be
+    /// added and executed again.
+    bool make_lacking() { return left_out_.make_lacking(); }
+    /// Begins to make pipelines on other threads: those that a frame of these settings needs, if it is drawn by these
+    /// techniques in one batch; those that the last frame did without.
+    void make_for(const FrameSettings& settings, const Techniques& techniques);
+    void make_ahead() { left_out_.make_ahead(); }
 
   private:
     using Stage = SplatPrograms::Stage;
@@ -55,9 +63,12 @@ class SplatPasses {
 
     bool uses(Technique technique) const;
     bool is_mixed() const { return uses(Technique::kPoint) || uses(Technique::kRaster); }
-    SurfelOwnership add_tiles(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
+    SurfelOwnership add_tiles(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,
+                              const FrameSettings& settings);
     SurfelOwnership add_mixed(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings);
 
+    /// Those that every frame of one batch of tiles needs and that take long.
+    void make_gathering(const FrameSettings& settings, bool composed);
     void add_setup(graph::Graph& graph, const FrameSettings& settings, const SplatBatch& batch);
     void add_list(graph::Graph& graph, const FrameSettings& settings, const GroupRange& range);
     /// For tiles without splats, which are not gathered.
@@ -83,6 +94,7 @@ class SplatPasses {
     bool supported_, tiles_supported_;
     SplatBuffers buffers_;
     SplatPrograms programs_;
+    LeftOutCells left_out_;
     RasterPasses raster_;
     SplatDepthPass depth_;
     SplatHandles handles_;

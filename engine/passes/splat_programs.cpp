@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <utility>
 
 namespace splice {
 
@@ -50,15 +52,54 @@ SplatPrograms::SplatPrograms(gpu::Device& device, const FrameData& data, const S
                                             .address_mode = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE})),
       pool_(device) {}
 
-void SplatPrograms::bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings,
-                         const Variant& variant) {
-    struct Program {
+std::vector<SplatPrograms::Making> SplatPrograms::begin_making(const FrameSettings& settings,
+                                                               std::span<const Program> programs) {
+    std::vector<Making> making;
+    for (const Program& program : programs) {
+        std::shared_future<gpu::ComputePipeline>& pipeline = pipelines_[key_of(settings, program)];
+        if (pipeline.valid()) continue;
+        making.emplace_back([this, settings, program] { return make(settings, program); });
+        pipeline = making.back().get_future().share();
+    }
+    return making;
+}
+
+void SplatPrograms::make_together(const FrameSettings& settings, std::span<const Program> programs) {
+    for (Making& making : begin_making(settings, programs))
+        makers_.emplace_back(std::move(making));
+}
+
+void SplatPrograms::make_in_turn(const FrameSettings& settings, std::span<const Program> programs) {
+    std::vector<Making> making = begin_making(settings, programs);
+    if (making.empty()) return;
+    makers_.emplace_back([making = std::move(making)](const std::stop_token& stop) mutable {
+        for (Making& one : making)
+            if (!stop.stop_requested()) one();
+    });
+}
+
+bool SplatPrograms::is_made(const FrameSettings& settings, const Program& program) const {
+    const auto known = pipelines_.find(key_of(settings, program));
+    return known != pipelines_.end() && known->second.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+const gpu::ComputePipeline& SplatPrograms::pipeline(const FrameSettings& settings, const Program& program) {
+    std::shared_future<gpu::ComputePipeline>& pipeline = pipelines_[key_of(settings, program)];
+    if (!pipeline.valid())
+        for (Making& making : begin_making(settings, std::span(&program, 1)))
+            making();
+    return pipeline.get();
+}
+
+gpu::ComputePipeline SplatPrograms::make(const FrameSettings& settings, const Program& program) const {
+    struct Source {
         const gpu::ShaderModule& shader;
         const char* name;
         std::uint32_t part = 0;  // constant 0
     };
-    const Program program = [&]() -> Program {
-        switch (stage) {
+    const Variant& variant = program.variant;
+    const Source source = [&]() -> Source {
+        switch (program.stage) {
             case Stage::kSetup:
                 return {setup_, "splat_setup"};
             case Stage::kTileCells:
@@ -81,17 +122,18 @@ void SplatPrograms::bind(const graph::PassContext& context, Stage stage, const F
                 return {point_sums_, "point_sums", variant.adds ? 1u : 0u};
         }
     }();
-    gpu::ComputePipeline& pipeline = pipelines_[{frame_variant(settings), stage, variant}];
-    if (!pipeline) {
-        std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
-        constants[0] = program.part;
-        constants[3] = variant.composes ? 1u : 0u;
-        constants[4] = variant.mixed ? 1u : 0u;
-        constants[5] = is_deferred(settings) ? 1u : 0u;
-        constants[7] = static_cast<std::uint32_t>(variant.cells);
-        pipeline = gpu::ComputePipeline(device_, {&program.shader, constants}, layout_.handle(), program.name);
-    }
-    vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle());
+    std::map<std::uint32_t, std::uint32_t> constants = frame_constants(settings);
+    constants[0] = source.part;
+    constants[3] = variant.composes ? 1u : 0u;
+    constants[4] = variant.mixed ? 1u : 0u;
+    constants[5] = is_deferred(settings) ? 1u : 0u;
+    constants[7] = static_cast<std::uint32_t>(variant.cells);
+    return {device_, {&source.shader, constants}, layout_.handle(), source.name};
+}
+
+void SplatPrograms::bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings,
+                         const Variant& variant) {
+    vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline(settings, {stage, variant}).handle());
     const VkDescriptorSet frame_set = data_.set(), splats = buffers_.set();
     vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.handle(), 0, 1, &frame_set, 0,
                             nullptr);

@@ -7,8 +7,13 @@
 #include "engine/passes/splat_buffers.h"
 
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <map>
+#include <span>
+#include <thread>
 #include <tuple>
+#include <vector>
 
 namespace splice {
 
@@ -36,6 +41,11 @@ class SplatPrograms {
         auto operator<=>(const Variant&) const = default;
     };
 
+    struct Program {
+        Stage stage;
+        Variant variant;
+    };
+
     SplatPrograms(gpu::Device& device, const FrameData& data, const SplatBuffers& buffers);
 
     /// Images and buffers that the passes of the frame work on; those that it does not have are not read.
@@ -46,7 +56,14 @@ class SplatPrograms {
     };
     void set_targets(const Targets& targets) { targets_ = targets; }
 
-    /// The pipeline and sets 0, 2 and, where the stage uses it, 3.
+    /// Begins to make those pipelines that are not made yet, each on a thread of its own, or in turn on one thread.
+    void make_together(const FrameSettings& settings, std::span<const Program> programs);
+    void make_in_turn(const FrameSettings& settings, std::span<const Program> programs);
+    bool is_made(const FrameSettings& settings, const Program& program) const;
+    /// Throws what making it threw.
+    void wait_for(const FrameSettings& settings, const Program& program) { pipeline(settings, program); }
+
+    /// The pipeline, which is made here if nobody began to, and sets 0, 2 and, where the stage uses it, 3.
     void bind(const graph::PassContext& context, Stage stage, const FrameSettings& settings, const Variant& variant);
     void push(VkCommandBuffer commands, const InstanceConstants& constants) const;
     /// The rest of a set-up job: set 1.
@@ -59,6 +76,14 @@ class SplatPrograms {
         std::uint64_t plan_id = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
     };
+    using Key = std::tuple<FrameVariant, Stage, Variant>;
+    using Making = std::packaged_task<gpu::ComputePipeline()>;
+    static Key key_of(const FrameSettings& settings, const Program& program) {
+        return {frame_variant(settings), program.stage, program.variant};
+    }
+    std::vector<Making> begin_making(const FrameSettings& settings, std::span<const Program> programs);
+    gpu::ComputePipeline make(const FrameSettings& settings, const Program& program) const;
+    const gpu::ComputePipeline& pipeline(const FrameSettings& settings, const Program& program);
     VkDescriptorSet target_set(const graph::PassContext& context);
 
     gpu::Device& device_;
@@ -72,7 +97,8 @@ class SplatPrograms {
     gpu::DescriptorPool pool_;
     Targets targets_;
     Sets sets_;
-    std::map<std::tuple<FrameVariant, Stage, Variant>, gpu::ComputePipeline> pipelines_;
+    std::map<Key, std::shared_future<gpu::ComputePipeline>> pipelines_;
+    std::vector<std::jthread> makers_;  // the last member: they use the others
 };
 
 }  // namespace splice

@@ -65,7 +65,11 @@ Viewer::Viewer(const ViewerCommandLine& command)
     if (command.shaders) shaders_.emplace(*command.shaders);
     graphics_.emplace(window_, instance_, command.renderer.device, state_.present_mode);
     note_start("device opened");
-    if (!command.inputs.empty()) open(command.inputs, false);
+    if (!command.inputs.empty()) {
+        // As most models are shown, while they are read.
+        graphics_->renderer->make_for(state_.looks[0], Lighting{});
+        open(command.inputs, false);
+    }
     redraw_ = 1;
 }
 

@@ -1,12 +1,14 @@
-// Vectors of megabytes, whose memory all threads get from the system together: for one thread that touches page after
-// page, it is a tenth of a point cloud's bake.
+// Memory for vectors of megabytes. All threads get it from the system together, as for one that touches page after page
+// it is a tenth of a point cloud's bake; and a program may keep what it no longer needs for what it needs next.
 #pragma once
 
+#include <malloc.h>
 #include <sys/mman.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <climits>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +26,15 @@ inline void populate([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t
     tbb::parallel_for(begin, end, kPiece, [&](std::uintptr_t piece) {
         madvise(reinterpret_cast<void*>(piece), std::min(kPiece, end - piece), MADV_POPULATE_WRITE);
     });
+#endif
+}
+
+/// For a whole program, before it needs memory: what is freed is used again instead of going back to the kernel, which
+/// would clear every page anew. Only with glibc.
+inline void keep_freed_memory() {
+#ifdef M_MMAP_THRESHOLD
+    mallopt(M_MMAP_THRESHOLD, INT_MAX);
+    mallopt(M_TRIM_THRESHOLD, INT_MAX);
 #endif
 }
 

@@ -22,7 +22,7 @@ Vec3f stored_normal(const format::Surfel& surfel) {
     return {normal[0], normal[1], normal[2]};
 }
 
-format::Surfel make_surfel(const Vec3f& position, const CloudDisk& disk, std::uint32_t colour) {
+format::PackedSurfel make_surfel(const Vec3f& position, const CloudDisk& disk, std::uint32_t colour) {
     format::Surfel surfel{};
     for (int axis = 0; axis < 3; ++axis) {
         surfel.position[axis] = position[axis];
@@ -31,8 +31,7 @@ format::Surfel make_surfel(const Vec3f& position, const CloudDisk& disk, std::ui
     surfel.radius = half_at_least(disk.radius);
     surfel.extent = encode_extent({disk.above, disk.below, 0}, float_from_half(surfel.radius));
     surfel.normal = encode_octahedral(disk.normal.x(), disk.normal.y(), disk.normal.z());
-    // What packing changes is changed before anything is bounded by it.
-    return unpack_surfel(pack_surfel(surfel), 0);
+    return pack_surfel(surfel);
 }
 
 class Assembler {
@@ -40,12 +39,10 @@ class Assembler {
     Assembler(const UnitCloud& cloud, const CloudSurface& surface) : cloud_(cloud), surface_(surface) {}
 
     Model assemble() {
-        model_.surfels = large_vector<format::Surfel>(cloud_.positions.size());
-        tbb::parallel_for(std::size_t{0}, model_.surfels.size(), [&](std::size_t point) {
-            const std::uint32_t colour = cloud_.colours.empty() ? kWhite : cloud_.colours[point];
-            model_.surfels[point] = make_surfel(cloud_.positions[point], surface_.disks[point], colour);
-        });
-        nodes_ = build_point_octree(model_.surfels);
+        PointSplit split = split_points(cloud_.positions);
+        make_surfels(split.order);
+        std::vector<std::uint32_t>().swap(split.order);
+        nodes_ = bound_point_octree(model_.surfels, std::move(split));
         cut_patches();
         bounds_.resize(model_.patches.size());
         tbb::parallel_for(std::size_t{0}, model_.patches.size(), [&](std::size_t patch) { measure_patch(patch); });
@@ -58,6 +55,17 @@ class Assembler {
     }
 
   private:
+    void make_surfels(const std::vector<std::uint32_t>& order) {
+        model_.surfels = large_vector<format::Surfel>(order.size());
+        model_.packed_surfels = large_vector<format::PackedSurfel>(order.size());
+        tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t place) {
+            const std::uint32_t point = order[place], colour = cloud_.colours.empty() ? kWhite : cloud_.colours[point];
+            model_.packed_surfels[place] = make_surfel(cloud_.positions[point], surface_.disks[point], colour);
+            // What packing changes is changed before anything is bounded by it.
+            model_.surfels[place] = unpack_surfel(model_.packed_surfels[place], 0);
+        });
+    }
+
     // Patches are the largest nodes of the tree that are small enough, small siblings together.
     void cut_patches() { cut_patches(0); }
 
@@ -139,9 +147,6 @@ class Assembler {
         model_.point_tree = large_vector<format::PackedPointNode>(nodes_.size());
         tbb::parallel_for(std::size_t{0}, nodes_.size(),
                           [&](std::size_t i) { model_.point_tree[i] = pack_point_node(nodes_[i]); });
-        model_.packed_surfels = large_vector<format::PackedSurfel>(model_.surfels.size());
-        tbb::parallel_for(std::size_t{0}, model_.surfels.size(),
-                          [&](std::size_t i) { model_.packed_surfels[i] = pack_surfel(model_.surfels[i]); });
         std::vector<format::Surfel>().swap(model_.surfels);
     }
 

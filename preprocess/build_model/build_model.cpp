@@ -96,6 +96,7 @@ Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats&
             return orient_normals(unit.positions, surface.neighbours, surface.disks).components;
         });
     }
+    std::vector<StoredNeighbours>().swap(surface.neighbours);
     Model model = timed(progress, "assemble", stats.seconds_assemble, [&] { return assemble_cloud(unit, surface); });
     stats.cluster.surfel_patches = model.patches.size();
     stats.surfel.surfels = model.packed_surfels.size();

@@ -3,6 +3,7 @@
 #include "preprocess/build_model/bake_report.h"
 #include "preprocess/build_model/program_main.h"
 #include "preprocess/build_model/stage_display.h"
+#include "preprocess/large_vector.h"
 #include "preprocess/model_format/atomic_file.h"
 
 #include <sys/resource.h>
@@ -57,6 +58,7 @@ int bake(const BakeCommand& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    splice::keep_freed_memory();
     return run_program("splice-bake", [&] {
         const auto command = parse_bake_command(argc, argv);
         return command ? bake(*command) : 0;

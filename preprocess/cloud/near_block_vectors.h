@@ -1,4 +1,4 @@
-// What the kinds of vectors have in common. Only the files near_block*.cpp include this.
+// What plain code and vectors have in common. Only the files near_block*.cpp include this.
 #pragma once
 
 #include "preprocess/cloud/near_block.h"
@@ -13,13 +13,16 @@ inline void update_reach(NearLists& lists, std::size_t q) {
     // Of kNoNeighbour it is no number, and so not less.
     const float last = squared_distance_of(lists.first[q * lists.stride + lists.k - 1]);
     lists.reach[q] = last < lists.reach[q] ? last : lists.reach[q];
+    lists.aside[q] = 0;
+}
+
+/// A block more may not fit.
+inline bool is_full(const NearLists& lists, std::size_t q) {
+    return lists.aside[q] > NearLists::kAside - kBlockPoints;
 }
 
 #ifdef SPLICE_NEAR_VECTORS
-void add_near_points_avx2(const PointBlock& own, const PointBlock& other, std::uint32_t first_index, bool same,
-                          NearLists& lists);
-void add_near_points_avx512(const PointBlock& own, const PointBlock& other, std::uint32_t first_index, bool same,
-                            NearLists& lists);
+NearFunctions near_functions_avx2();
 #endif
 
 }  // namespace splice

@@ -1,8 +1,7 @@
-// The nearest neighbours of every point of a cloud, all at once. Points in Morton order are cut into blocks; boxes over
-// 2, 4, 8 ... blocks make a tree without pointers. A block's points are searched for together, so that the walk through
-// the tree is paid once and distances are computed a block at a time. Exact: the same as a comparison with all points,
-// and about twice as fast on a scan as a kd-tree asked point by point (tests/cloud/test_neighbour_search.cpp compares
-// both).
+// The nearest neighbours of every point of a cloud, all at once. Points are cut into blocks; boxes over 8, 64 ...
+// blocks make a tree without pointers. A block's points are searched for together, so that the walk through the tree is
+// paid once and distances are computed a block at a time. Exact: the same as a comparison with all points
+// (tests/cloud/test_neighbour_search.cpp compares with a kd-tree).
 #pragma once
 
 #include "preprocess/cloud/near_block.h"
@@ -36,26 +35,23 @@ class NeighbourSearch {
         float bound_ = kUnbounded;  // squared distance within which the next search's neighbours are expected
     };
 
-    /// Any order of the points is right, but only nearby points side by side are fast. Coordinates within 1e9.
+    /// Any order of the points is right, but only nearby points side by side are fast, and blocks that are compact
+    /// faster (unit_cloud.h). Coordinates within 1e9.
     explicit NeighbourSearch(std::span<const Vec3f> points);
 
-    std::size_t blocks() const { return (points_ + kBlock - 1) / kBlock; }
+    std::size_t blocks() const { return blocks_.size(); }
 
     /// `k` is at most kMostNeighbours. Of points [kBlock * block, kBlock * (block + 1)), but only those whose bit is
     /// set in `points`, the first one's the lowest; a point is no neighbour of its own. Thread-safe.
     void find(std::size_t block, unsigned k, Lists& lists, std::uint32_t points = 0xffff) const;
 
   private:
-    /// The fourth coordinate is 0, for the processor's vectors.
-    struct Bounds {
-        Eigen::Vector4f low, high;
-    };
     class Query;
 
-    AddNearPoints add_near_points_ = near_points_adder();
+    NearFunctions functions_ = near_functions();
     std::size_t points_;
     std::vector<PointBlock> blocks_;
-    std::vector<std::vector<Bounds>> levels_;  // of single blocks first, of all last
+    std::vector<std::vector<BoxGroup>> levels_;  // of single blocks first, of at most kGroupBoxes boxes last
 };
 
 }  // namespace splice

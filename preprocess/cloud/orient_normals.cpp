@@ -16,10 +16,11 @@
 namespace splice {
 namespace {
 
-constexpr std::size_t kPiece = 4096;  // points; consecutive, so mostly near each other
-constexpr float kCertain = 0.8f;      // edges between parallel enough normals join a piece's points
-constexpr std::size_t kBuckets = 32;  // of certainty
-constexpr double kClosed = 0.3;       // |sum of n A| / sum of A: 0 for a closed surface, 1 for a plane
+constexpr std::size_t kPiece = 4096;   // points; consecutive, so mostly near each other
+constexpr float kCertain = 0.8f;       // edges between parallel enough normals join a piece's points
+constexpr float kBeyondDoubt = 0.95f;  // such edges join them in any order
+constexpr std::size_t kBuckets = 32;   // of certainty
+constexpr double kClosed = 0.3;        // |sum of n A| / sum of A: 0 for a closed surface, 1 for a plane
 constexpr float kParallel = 0.7f;
 
 struct Edge {
@@ -46,6 +47,9 @@ constexpr float kVoteSteps = 1 << 20;
 struct Vote {
     std::uint64_t pair;     // numbers of two sets, the smaller in the upper half
     std::int64_t opposite;  // certainty for opposite less that for equal signs, in kVoteSteps
+
+    std::uint32_t low() const { return static_cast<std::uint32_t>(pair >> 32); }
+    std::uint32_t high() const { return static_cast<std::uint32_t>(pair); }
 };
 
 class Orienter {
@@ -75,11 +79,12 @@ class Orienter {
         return std::ranges::count(neighbours_[of], static_cast<std::uint32_t>(point)) != 0;
     }
     bool is_within(std::size_t piece, const Vote& vote) const {
-        return vote.pair >> 32 >= first_set_[piece] && (vote.pair & 0xffffffffu) < first_set_[piece + 1];
+        return vote.low() >= first_set_[piece] && vote.high() < first_set_[piece + 1];
     }
     std::size_t end_of(std::size_t piece) const { return std::min(disks_.size(), (piece + 1) * kPiece); }
 
-    // Kruskal's algorithm on the certain edges inside a piece.
+    // Kruskal's algorithm on the certain edges inside a piece; those beyond doubt are neither sorted nor, once their
+    // ends are joined, looked at.
     void join_piece(std::size_t piece) {
         const std::size_t begin = piece * kPiece, end = end_of(piece);
         struct Candidate {
@@ -87,21 +92,28 @@ class Orienter {
             std::uint8_t bucket;
             bool opposite;
         };
+        SignedSets sets(end - begin);
         std::vector<Candidate> found;
-        found.reserve((end - begin) * kStoredNeighbours);
         std::array<std::size_t, kBuckets> place{};
         for (std::size_t a = begin; a < end; ++a) {
+            const auto own = static_cast<std::uint32_t>(a - begin);
             for (const std::uint32_t b : neighbours_[a]) {
                 if (b < begin || b >= end || b == a) continue;
+                const auto other = static_cast<std::uint32_t>(b - begin);
+                if (sets.are_joined(own, other)) continue;
                 if (std::abs(disks_[a].normal.dot(disks_[b].normal)) < kCertain) continue;
-                // From b's side this edge was seen already.
-                if (b < a && is_neighbour(b, a)) continue;
                 const Edge edge = edge_between(a, b);
                 if (edge.certainty < kCertain) continue;
-                const float share = (1 - edge.certainty) / (1 - kCertain);
+                if (edge.certainty >= kBeyondDoubt) {
+                    sets.join(own, other, edge.opposite);
+                    continue;
+                }
+                // From b's side this edge was seen already.
+                if (b < a && is_neighbour(b, a)) continue;
+                const float share = (kBeyondDoubt - edge.certainty) / (kBeyondDoubt - kCertain);
                 const auto bucket = std::min(static_cast<std::size_t>(share * kBuckets), kBuckets - 1);
                 ++place[bucket];
-                found.push_back({static_cast<std::uint16_t>(a - begin), static_cast<std::uint16_t>(b - begin),
+                found.push_back({static_cast<std::uint16_t>(own), static_cast<std::uint16_t>(other),
                                  static_cast<std::uint8_t>(bucket), edge.opposite});
             }
         }
@@ -110,7 +122,6 @@ class Orienter {
         std::vector<Candidate> sorted(found.size());
         for (const Candidate& candidate : found)
             sorted[place[candidate.bucket]++] = candidate;
-        SignedSets sets(end - begin);
         for (const Candidate& candidate : sorted)
             sets.join(candidate.a, candidate.b, candidate.opposite);
         for (std::size_t a = begin; a < end; ++a) {
@@ -136,6 +147,8 @@ class Orienter {
         });
     }
 
+    // Of a piece's sets and those beside them. Within the piece only such votes are left as Kruskal's algorithm would
+    // not pass over for clearer ones of the same piece: so it would among the votes of all pieces.
     std::vector<Vote> count_votes(std::size_t piece) const {
         std::vector<Vote> votes;
         for (std::size_t a = piece * kPiece; a < end_of(piece); ++a) {
@@ -150,9 +163,21 @@ class Orienter {
                 votes.push_back({std::uint64_t{low} << 32 | high, edge.opposite ? weight : -weight});
             }
         }
-        return summed(std::move(votes));
+        votes = summed(std::move(votes));
+        const auto inner =
+            std::partition(votes.begin(), votes.end(), [&](const Vote& vote) { return is_within(piece, vote); });
+        std::sort(votes.begin(), inner, is_clearer);
+        SignedSets sets(first_set_[piece + 1] - first_set_[piece]);
+        votes.erase(std::remove_if(votes.begin(), inner,
+                                   [&](const Vote& vote) {
+                                       return !sets.join(vote.low() - first_set_[piece],
+                                                         vote.high() - first_set_[piece], vote.opposite > 0);
+                                   }),
+                    inner);
+        return votes;
     }
 
+    // By pair.
     static std::vector<Vote> summed(std::vector<Vote> votes) {
         tbb::parallel_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.pair < b.pair; });
         std::size_t sums = 0;
@@ -167,6 +192,11 @@ class Orienter {
         return votes;
     }
 
+    static bool is_clearer(const Vote& a, const Vote& b) {
+        const std::int64_t of_a = std::abs(a.opposite), of_b = std::abs(b.opposite);
+        return of_a != of_b ? of_a > of_b : a.pair < b.pair;
+    }
+
     // The pairs with the clearest votes first.
     void join_sets(const std::vector<std::vector<Vote>>& votes_of_pieces) {
         // Two pieces may have voted on a pair only if it has a set of each.
@@ -176,14 +206,10 @@ class Orienter {
                 (is_within(piece, vote) ? votes : across).push_back(vote);
         across = summed(std::move(across));
         votes.insert(votes.end(), across.begin(), across.end());
-        tbb::parallel_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
-            const std::int64_t of_a = std::abs(a.opposite), of_b = std::abs(b.opposite);
-            return of_a != of_b ? of_a > of_b : a.pair < b.pair;
-        });
+        tbb::parallel_sort(votes.begin(), votes.end(), is_clearer);
         SignedSets components(sets_);
         for (const Vote& vote : votes)
-            components.join(static_cast<std::uint32_t>(vote.pair >> 32), static_cast<std::uint32_t>(vote.pair),
-                            vote.opposite > 0);
+            components.join(vote.low(), vote.high(), vote.opposite > 0);
         place_.reserve(sets_);
         for (std::uint32_t set = 0; set < sets_; ++set)
             place_.push_back(components.find(set));

@@ -31,6 +31,10 @@ class SignedSets {
         return {element, opposite};
     }
 
+    bool are_joined(std::uint32_t a, std::uint32_t b) {
+        return parent_[a] == parent_[b] || find(a).representative == find(b).representative;
+    }
+
     /// Joins the sets of `a` and `b` so that both have equal or opposite signs. False if they were one set already. The
     /// smaller representative stays.
     bool join(std::uint32_t a, std::uint32_t b, bool opposite) {

@@ -1,5 +1,7 @@
 #include "preprocess/cloud/unit_cloud.h"
 
+#include "preprocess/cloud/compact_blocks.h"
+#include "preprocess/cloud/near_block.h"
 #include "preprocess/large_vector.h"
 #include "preprocess/mesh/unit_box.h"
 #include "preprocess/model_format/error.h"
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace splice {
 namespace {
@@ -81,6 +84,26 @@ std::vector<Key> sorted_keys(const std::vector<Vec3f>& positions) {
     return keys;
 }
 
+// Runs of keys, whose points are near each other, into compact blocks.
+void order_keys_by_blocks(std::vector<Key>& keys, const std::vector<Vec3f>& positions) {
+    constexpr std::size_t kRun = 4096;
+    const std::size_t runs = (keys.size() + kRun - 1) / kRun;
+    tbb::parallel_for(Range(0, runs), [&](const Range& range) {
+        std::vector<PlacedPoint> points;
+        for (std::size_t run = range.begin(); run < range.end(); ++run) {
+            const std::span<Key> own = std::span(keys).subspan(run * kRun, std::min(kRun, keys.size() - run * kRun));
+            points.clear();
+            for (const Key& key : own) {
+                const Vec3f& position = positions[key.point];
+                points.push_back({{position.x(), position.y(), position.z()}, key.point});
+            }
+            order_by_blocks(points, kBlockPoints);
+            for (std::size_t i = 0; i < own.size(); ++i)
+                own[i].point = points[i].index;
+        }
+    });
+}
+
 template <class T>
 std::vector<T> permuted(std::vector<T> values, const std::vector<Key>& keys) {
     if (values.empty()) return {};
@@ -110,6 +133,7 @@ UnitCloud make_unit_cloud(PointCloud cloud) {
     keys.erase(std::unique(keys.begin(), keys.end(), same_place), keys.end());
     unit.duplicate_points = cloud.offsets.size() - keys.size();
 
+    order_keys_by_blocks(keys, cloud.offsets);
     unit.positions = permuted(std::move(cloud.offsets), keys);
     unit.colours = permuted(std::move(cloud.colours), keys);
     unit.normals = permuted(std::move(cloud.normals), keys);

@@ -4,7 +4,6 @@
 #include "preprocess/lod/bounding_ellipse.h"
 #include "preprocess/lod/disk_bounds.h"
 #include "preprocess/lod/homogeneous_covariance.h"
-#include "preprocess/lod/split_points.h"
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/srgb.h"
 #include "preprocess/model_format/surfel_extent.h"
@@ -46,7 +45,7 @@ struct Sums {
 
     void add(const format::Surfel& surfel, const Vec3f& unit_normal, float radius) {
         const double weight = static_cast<double>(radius) * static_cast<double>(radius);
-        covariance.add(position_of(surfel));
+        covariance.add(position_of(surfel).cast<double>());
         normal += weight * unit_normal.cast<double>();
         for (int c = 0; c < 3; ++c)
             colour[c] += weight * static_cast<double>(linear_from_srgb(surfel.colour[c]));
@@ -85,24 +84,25 @@ struct NodeBounds {
 
 class Builder {
   public:
-    explicit Builder(std::vector<format::Surfel>& surfels) : surfels_(surfels) {}
+    /// In the order of `split`.
+    Builder(std::span<const format::Surfel> surfels, PointSplit split)
+        : surfels_(surfels), nodes_(std::move(split.nodes)), level_begin_(std::move(split.level_begin)) {}
 
-    std::vector<format::PointNode> build(PointSplit split) {
-        reorder(split.order);
-        nodes_ = std::move(split.nodes);
-        sums_ = large_vector<Sums>(nodes_.size());
-        thickness_ = large_vector<Thickness>(nodes_.size());
+    std::vector<format::PointNode> build() {
         const std::vector<std::uint32_t> small = small_roots();
+        // Nodes are breadth first: of those below all small roots nobody asks.
+        sums_.resize(small.back() + 1);
+        thickness_.resize(small.back() + 1);
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, small.size()),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               DiskArrays disks;
                               for (std::size_t i = range.begin(); i < range.end(); ++i) {
                                   disks.clear();
-                                  finish_small(small[i], disks);
+                                  sums_[small[i]] = finish_small(small[i], disks);
                               }
                           });
-        for (std::size_t level = split.level_begin.size() - 1; level-- > 0;) {
-            tbb::parallel_for(split.level_begin[level], split.level_begin[level + 1], [&](std::uint32_t index) {
+        for (std::size_t level = level_begin_.size() - 1; level-- > 0;) {
+            tbb::parallel_for(level_begin_[level], level_begin_[level + 1], [&](std::uint32_t index) {
                 if (!is_small(index)) finish_large(index);
             });
         }
@@ -110,14 +110,8 @@ class Builder {
     }
 
   private:
-    void reorder(const std::vector<std::uint32_t>& order) {
-        std::vector<format::Surfel> sorted = large_vector<format::Surfel>(surfels_.size());
-        tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { sorted[i] = surfels_[order[i]]; });
-        surfels_ = std::move(sorted);
-    }
-
     std::span<const format::Surfel> surfels_of(const format::PointNode& node) const {
-        return std::span<const format::Surfel>(surfels_).subspan(node.first_surfel, node.surfel_count);
+        return surfels_.subspan(node.first_surfel, node.surfel_count);
     }
 
     bool is_small(std::uint32_t index) const {
@@ -137,22 +131,22 @@ class Builder {
     }
 
     // A node and all below it; its disks are appended to `disks`.
-    void finish_small(std::uint32_t index, DiskArrays& disks) {
+    Sums finish_small(std::uint32_t index, DiskArrays& disks) {
         const format::PointNode& node = nodes_[index];
         const std::size_t begin = disks.size();
+        Sums sums;
         if (node.child_count == 0) {
             for (const format::Surfel& surfel : surfels_of(node)) {
                 disks.add(surfel);
-                sums_[index].add(surfel, disks.normal(disks.size() - 1), disks.radius(disks.size() - 1));
+                sums.add(surfel, disks.normal(disks.size() - 1), disks.radius(disks.size() - 1));
             }
             disks.fill_step();
         } else {
             for (std::uint32_t child = 0; child < node.child_count; ++child)
-                finish_small(node.first_child + child, disks);
-            add_up(index);
+                sums.add(finish_small(node.first_child + child, disks));
         }
-        place(index);
-        const Axes axes = choose_axes(index);
+        place(index, sums);
+        const Axes axes = choose_axes(index, sums);
         const DiskBounds disk = bound_disks(
             disks, begin, disks.size(),
             {axes.centre.cast<float>(), axes.normal.cast<float>(), axes.major.cast<float>(), axes.minor.cast<float>()});
@@ -164,24 +158,21 @@ class Builder {
                              .largest_radius = exact(disk.largest_radius),
                              .major = exact(disk.major),
                              .minor = exact(disk.minor)});
+        return sums;
     }
 
     void finish_large(std::uint32_t index) {
-        add_up(index);
-        place(index);
-        store_bounds(index, bounds_from_children(index, choose_axes(index)));
-    }
-
-    void add_up(std::uint32_t index) {
         const format::PointNode& node = nodes_[index];
+        Sums& sums = sums_[index];
         for (std::uint32_t child = 0; child < node.child_count; ++child)
-            sums_[index].add(sums_[node.first_child + child]);
+            sums.add(sums_[node.first_child + child]);
+        place(index, sums);
+        store_bounds(index, bounds_from_children(index, choose_axes(index, sums)));
     }
 
     // Position, normal, colour: means.
-    void place(std::uint32_t index) {
+    void place(std::uint32_t index, const Sums& sums) {
         format::PointNode& node = nodes_[index];
-        const Sums& sums = sums_[index];
         const Vec3d mean = sums.covariance.mean();
         for (int k = 0; k < 3; ++k) {
             node.position[k] = static_cast<float>(mean[k]);
@@ -216,7 +207,7 @@ class Builder {
     };
 
     // From what the node stores of position and normal, so that rounding is in.
-    Axes choose_axes(std::uint32_t index) {
+    Axes choose_axes(std::uint32_t index, const Sums& sums) {
         format::PointNode& node = nodes_[index];
         Axes axes;
         for (int k = 0; k < 3; ++k)
@@ -227,7 +218,7 @@ class Builder {
                       static_cast<double>(frame.s[2]));
         const Vec3d t(static_cast<double>(frame.t[0]), static_cast<double>(frame.t[1]),
                       static_cast<double>(frame.t[2]));
-        const Ellipse spread = ellipse_of(sums_[index].covariance.in_plane(axes.centre, s, t));
+        const Ellipse spread = ellipse_of(sums.covariance.in_plane(axes.centre, s, t));
         node.major_axis = encoded(spread.axis.x() * s + spread.axis.y() * t);
         round_axis(node);
         // From here on the axis that is stored; what it leaves the plane by is within the rounding added below.
@@ -274,34 +265,51 @@ class Builder {
         // A thousandth of a radian for the rounding of normals.
         node.cone_angle = static_cast<std::uint8_t>(
             std::min(std::ceil((bounds.cone + 1e-3) / std::numbers::pi * kConeSteps), kConeSteps));
-        thickness_[index] = {bounds.above, bounds.below};
+        if (index < thickness_.size()) thickness_[index] = {bounds.above, bounds.below};
         node.extent =
             encode_extent({static_cast<float>(bounds.above), static_cast<float>(bounds.below),
                            static_cast<float>(kEpsilon * bounds.largest_radius + bounds.above + bounds.below)},
                           node.major);
     }
 
-    std::vector<format::Surfel>& surfels_;
+    std::span<const format::Surfel> surfels_;
     std::vector<format::PointNode> nodes_;
-    std::vector<Sums> sums_;
+    std::vector<std::uint32_t> level_begin_;
+    std::vector<Sums> sums_;  // of large nodes and small roots
     struct Thickness {
         double above, below;
     };
-    std::vector<Thickness> thickness_;  // what `extent` says, before it is cut to the major axis
+    std::vector<Thickness> thickness_;  // of the same: what `extent` says, before it is cut to the major axis
 };
+
+void reorder(std::vector<format::Surfel>& surfels, const std::vector<std::uint32_t>& order) {
+    std::vector<format::Surfel> sorted = large_vector<format::Surfel>(surfels.size());
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) { sorted[i] = surfels[order[i]]; });
+    surfels = std::move(sorted);
+}
+
+std::vector<format::PointNode> build(std::vector<format::Surfel>& surfels, PointSplit split) {
+    reorder(surfels, split.order);
+    return bound_point_octree(surfels, std::move(split));
+}
 
 }  // namespace
 
 std::vector<format::PointNode> build_point_octree(std::vector<format::Surfel>& surfels) {
     if (surfels.empty()) return {};
-    return Builder(surfels).build(split_points(surfels));
+    return build(surfels, split_points(positions_of(surfels)));
+}
+
+std::vector<format::PointNode> bound_point_octree(std::span<const format::Surfel> surfels, PointSplit split) {
+    if (surfels.empty()) return {};
+    return Builder(surfels, std::move(split)).build();
 }
 
 std::vector<format::PointNode> build_patch_point_octree(std::vector<format::Surfel>& surfels,
                                                         std::span<const format::Patch> patches,
                                                         std::span<const format::OctreeNode> octree) {
     if (surfels.empty()) return {};
-    return Builder(surfels).build(split_patches(surfels, patches, octree));
+    return build(surfels, split_patches(surfels, patches, octree));
 }
 
 }  // namespace splice

@@ -5,6 +5,7 @@
 // points; above, from its children's, which costs no more than a walk over the nodes.
 #pragma once
 
+#include "preprocess/lod/split_points.h"
 #include "preprocess/model_format/point_node.h"
 
 #include <span>
@@ -19,6 +20,9 @@ inline constexpr std::uint32_t kPointLeaf = 16;
 /// format::SectionKind::kPointTree. The surfels' patches are not looked at. Nothing for no surfels. Deterministic for
 /// any thread count. Fewer than 2^32 - 1 surfels.
 std::vector<format::PointNode> build_point_octree(std::vector<format::Surfel>& surfels);
+
+/// The same of surfels that are in the order of `split` already.
+std::vector<format::PointNode> bound_point_octree(std::span<const format::Surfel> surfels, PointSplit split);
 
 /// The same of a model whose surfels stay in their patches, and patches in their order: see split_patches. Octree
 /// leaves have at most eight patches.

@@ -22,8 +22,8 @@ class PatchSplitter {
     PointSplit split() {
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t patch) {
             if (patches_[patch].surfel_count != 0)
-                splits_[patch] =
-                    split_points(surfels_.subspan(patches_[patch].first_surfel, patches_[patch].surfel_count));
+                splits_[patch] = split_points(
+                    positions_of(surfels_.subspan(patches_[patch].first_surfel, patches_[patch].surfel_count)));
         });
         PointSplit result;
         result.order.resize(surfels_.size());

@@ -12,22 +12,22 @@
 namespace splice {
 namespace {
 
-// Large nodes are divided by parts of so many surfels, in parallel.
+// Large nodes are divided by parts of so many points, in parallel.
 constexpr std::size_t kPart = 1 << 16;
 
 using Counts = std::array<std::uint32_t, 8>;
 
 class Splitter {
   public:
-    explicit Splitter(std::span<const format::Surfel> surfels)
-        : surfels_(surfels), scratch_(large_vector<std::uint32_t>(surfels.size())) {
-        split_.order = large_vector<std::uint32_t>(surfels.size());
+    explicit Splitter(std::span<const Vec3f> positions)
+        : positions_(positions), scratch_(large_vector<std::uint32_t>(positions.size())) {
+        split_.order = large_vector<std::uint32_t>(positions.size());
         std::iota(split_.order.begin(), split_.order.end(), 0u);
     }
 
     // Level by level: the nodes of one in parallel, then their children in the order of their parents.
     PointSplit split() {
-        split_.nodes.push_back(node_over(0, static_cast<std::uint32_t>(surfels_.size())));
+        split_.nodes.push_back(node_over(0, static_cast<std::uint32_t>(positions_.size())));
         split_.level_begin = {0, 1};
         for (;;) {
             const std::uint32_t begin = split_.level_begin.end()[-2], end = split_.level_begin.end()[-1];
@@ -63,21 +63,30 @@ class Splitter {
             if (parts == 1) return visit(std::size_t{0});
             tbb::parallel_for(std::size_t{0}, parts, visit);
         };
-        std::vector<Vec3d> sums(parts, Vec3d::Zero());
+        // Most nodes are of one part, and small: nothing is allocated for those.
+        Vec3d sum_of_one = Vec3d::Zero();
+        Counts places_of_one{};
+        std::vector<Vec3d> sums_of_many;
+        std::vector<Counts> places_of_many;
+        if (parts > 1) {
+            sums_of_many.assign(parts, Vec3d::Zero());
+            places_of_many.assign(parts, Counts{});
+        }
+        const std::span<Vec3d> sums = parts > 1 ? std::span(sums_of_many) : std::span(&sum_of_one, 1);
+        const std::span<Counts> places = parts > 1 ? std::span(places_of_many) : std::span(&places_of_one, 1);
         for_each_part([&](std::size_t part) {
-            for (const std::uint32_t surfel : part_of(part))
-                sums[part] += position_of(surfels_[surfel]);
+            for (const std::uint32_t point : part_of(part))
+                sums[part] += positions_[point].cast<double>();
         });
         const Vec3d mean =
             std::accumulate(sums.begin(), sums.end(), Vec3d(Vec3d::Zero())) / static_cast<double>(range.size());
-        const auto octant = [&](std::uint32_t surfel) {
-            const Vec3d p = position_of(surfels_[surfel]);
+        const auto octant = [&](std::uint32_t point) {
+            const Vec3d p = positions_[point].cast<double>();
             return (p.x() > mean.x() ? 1u : 0u) | (p.y() > mean.y() ? 2u : 0u) | (p.z() > mean.z() ? 4u : 0u);
         };
-        std::vector<Counts> places(parts, Counts{});
         for_each_part([&](std::size_t part) {
-            for (const std::uint32_t surfel : part_of(part))
-                ++places[part][octant(surfel)];
+            for (const std::uint32_t point : part_of(part))
+                ++places[part][octant(point)];
         });
         // From how many to where the part's first goes.
         std::uint32_t next = 0;
@@ -93,8 +102,8 @@ class Splitter {
             return {count / 2, count - count / 2};
         }
         for_each_part([&](std::size_t part) {
-            for (const std::uint32_t surfel : part_of(part))
-                sorted[places[part][octant(surfel)]++] = surfel;
+            for (const std::uint32_t point : part_of(part))
+                sorted[places[part][octant(point)]++] = point;
         });
         for_each_part([&](std::size_t part) {
             std::copy_n(sorted.begin() + static_cast<std::ptrdiff_t>(part * kPart), part_of(part).size(),
@@ -114,15 +123,15 @@ class Splitter {
         }
     }
 
-    std::span<const format::Surfel> surfels_;
+    std::span<const Vec3f> positions_;
     std::vector<std::uint32_t> scratch_;
     PointSplit split_;
 };
 
 }  // namespace
 
-PointSplit split_points(std::span<const format::Surfel> surfels) {
-    return Splitter(surfels).split();
+PointSplit split_points(std::span<const Vec3f> positions) {
+    return Splitter(positions).split();
 }
 
 }  // namespace splice

@@ -1,17 +1,51 @@
 #include "preprocess/mesh/file_bytes.h"
 
+#include "preprocess/large_vector.h"
 #include "preprocess/model_format/error.h"
+#include "preprocess/model_format/posix_open.h"
 
+#include <tbb/parallel_for.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <limits>
+#include <span>
 
 namespace splice {
+
+namespace {
+
+/// A file open for reading.
+class Descriptor {
+  public:
+    explicit Descriptor(const std::filesystem::path& path)
+        : name_(path.string()), descriptor_(posix_open::open_for_reading(path.c_str())) {
+        if (descriptor_ < 0) throw SystemError(name_ + ": cannot open: " + std::strerror(errno));
+    }
+    ~Descriptor() { close(descriptor_); }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    void read(std::span<char> bytes, std::size_t offset) const {
+        while (!bytes.empty()) {
+            const ssize_t count = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) throw SystemError(name_ + ": read error after " + std::to_string(offset) + " bytes");
+            bytes = bytes.subspan(static_cast<std::size_t>(count));
+            offset += static_cast<std::size_t>(count);
+        }
+    }
+
+  private:
+    std::string name_;
+    int descriptor_;
+};
+
+}  // namespace
 
 std::string read_file_bytes(const std::filesystem::path& path) {
     std::error_code error;
@@ -27,14 +61,16 @@ std::string read_file_bytes(const std::filesystem::path& path) {
     }
     const auto size = std::filesystem::file_size(path, error);
     if (error) throw SystemError(path.string() + ": " + error.message());
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw SystemError(path.string() + ": cannot open: " + std::strerror(errno));
-    std::string bytes(size, '\0');
-    file.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::uintmax_t>(file.gcount()) != size) {
-        throw SystemError(path.string() + ": read error after " + std::to_string(file.gcount()) + " bytes");
-    }
+    const Descriptor file(path);
+    std::string bytes;
+    bytes.reserve(size);
+    populate(bytes.data(), size);
+    bytes.resize(size);
+    // Some threads copy faster from the kernel than one.
+    constexpr std::size_t kPiece = std::size_t{8} << 20;
+    tbb::parallel_for(std::size_t{0}, size, kPiece, [&](std::size_t begin) {
+        file.read(std::span(bytes).subspan(begin, std::min(kPiece, size - begin)), begin);
+    });
     return bytes;
 }
 

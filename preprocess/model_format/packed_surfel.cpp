@@ -42,46 +42,47 @@ void unpack_place(const std::uint32_t (&place)[2], float (&position)[3]) {
 
 // Rounding u and v does not find the nearest: of the four around, one does (Cigolle et al. 2014, "A Survey of Efficient
 // Representations for Independent Unit Vectors").
-std::uint32_t shorten_normal(std::uint32_t octahedral, unsigned bits) {
-    const int largest = (1 << (bits - 1)) - 1;
+template <unsigned bits>
+std::uint32_t shorten_normal(std::uint32_t octahedral) {
+    constexpr int largest = (1 << (bits - 1)) - 1;
     const auto share = [](std::uint32_t half) {
         return std::max(static_cast<double>(static_cast<std::int16_t>(half & 0xffffu)) / 32767, -1.0);
     };
     const double u = share(octahedral) * largest, v = share(octahedral >> 16) * largest;
     const auto code = [&](int a, int b) {
-        const std::uint32_t mask = (1u << bits) - 1;
+        constexpr std::uint32_t mask = (1u << bits) - 1;
         return (static_cast<std::uint32_t>(a) & mask) | (static_cast<std::uint32_t>(b) & mask) << bits;
     };
     const auto rounded = [](double value) { return static_cast<int>(value + (value < 0 ? -0.5 : 0.5)); };
     const std::uint32_t exact = code(rounded(u), rounded(v));
-    if (lengthen_normal(exact, bits) == octahedral) return exact;
+    if (lengthen_normal<bits>(exact) == octahedral) return exact;
     // Of any length, which the comparison takes out again.
     const auto direction = [&](double a, double b) {
-        std::array<double, 3> d{a, b, largest - std::abs(a) - std::abs(b)};
-        if (d[2] >= 0) return d;
-        d[0] = (largest - std::abs(b)) * (a >= 0 ? 1 : -1);
-        d[1] = (largest - std::abs(a)) * (b >= 0 ? 1 : -1);
-        return d;
+        const double up = largest - std::abs(a) - std::abs(b), below = std::max(-up, 0.0);
+        return std::array<double, 3>{a - std::copysign(below, a), b - std::copysign(below, b), up};
     };
     const std::array<double, 3> normal = direction(u, v);
     std::uint32_t nearest = 0;
-    double most = -1;
+    // Squares of cosines are compared as fractions.
+    double most = -1, most_square = 1;
     const int low_u = static_cast<int>(std::floor(u)), low_v = static_cast<int>(std::floor(v));
     for (const int a : {low_u, std::min(low_u + 1, largest)})
         for (const int b : {low_v, std::min(low_v + 1, largest)}) {
             const std::array<double, 3> d = direction(a, b);
             const double dot = d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2];
-            const double cosine = dot * dot / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-            if (cosine > most) {
-                most = cosine;
+            const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            if (dot * dot * most_square > most * square) {
+                most = dot * dot;
+                most_square = square;
                 nearest = code(a, b);
             }
         }
     return nearest;
 }
 
-std::uint32_t lengthen_normal(std::uint32_t shortened, unsigned bits) {
-    const int largest = (1 << (bits - 1)) - 1;
+template <unsigned bits>
+std::uint32_t lengthen_normal(std::uint32_t shortened) {
+    constexpr int largest = (1 << (bits - 1)) - 1;
     const auto lengthen = [&](std::uint32_t half) {
         int value = static_cast<int>(half & ((1u << bits) - 1));
         if (value > largest) value -= 1 << bits;
@@ -92,6 +93,11 @@ std::uint32_t lengthen_normal(std::uint32_t shortened, unsigned bits) {
     return lengthen(shortened) | lengthen(shortened >> bits) << 16;
 }
 
+template std::uint32_t shorten_normal<10>(std::uint32_t);
+template std::uint32_t shorten_normal<12>(std::uint32_t);
+template std::uint32_t lengthen_normal<10>(std::uint32_t);
+template std::uint32_t lengthen_normal<12>(std::uint32_t);
+
 format::PackedSurfel pack_surfel(const format::Surfel& surfel) {
     format::PackedSurfel packed{};
     const auto place = pack_place(surfel.position);
@@ -101,7 +107,7 @@ format::PackedSurfel pack_surfel(const format::Surfel& surfel) {
     packed.place[1] |= (above & 15u) << 28;
     packed.look = std::uint32_t{surfel.colour[0]} | std::uint32_t{surfel.colour[1]} << 8 |
                   std::uint32_t{surfel.colour[2]} << 16 | (below & 15u) << 24 | (radius & 15u) << 28;
-    packed.shape = shorten_normal(surfel.normal, kNormalBits) | radius >> 4 << 20 | above >> 4 << 30 | below >> 4 << 31;
+    packed.shape = shorten_normal<kNormalBits>(surfel.normal) | radius >> 4 << 20 | above >> 4 << 30 | below >> 4 << 31;
     return packed;
 }
 
@@ -113,7 +119,7 @@ format::Surfel unpack_surfel(const format::PackedSurfel& packed, std::uint16_t p
     const std::uint32_t above = packed.place[1] >> 28 | (packed.shape >> 30 & 1u) << 4,
                         below = (packed.look >> 24 & 15u) | packed.shape >> 31 << 4;
     surfel.extent = static_cast<std::uint16_t>(above | below << 5 | epsilons[below << 5 | above]);
-    surfel.normal = lengthen_normal(packed.shape, kNormalBits);
+    surfel.normal = lengthen_normal<kNormalBits>(packed.shape);
     for (unsigned channel = 0; channel < 3; ++channel)
         surfel.colour[channel] = static_cast<std::uint8_t>(packed.look >> 8 * channel);
     surfel.patch = patch;

@@ -32,8 +32,11 @@ format::PackedSurfel pack_surfel(const format::Surfel& surfel);
 /// Packs to the same bytes. `patch` is what Surfel::patch is to hold.
 format::Surfel unpack_surfel(const format::PackedSurfel& packed, std::uint16_t patch);
 
-/// An octahedral normal (octahedral.h) in 2 x `bits` bits, u in the lower ones, the nearest that there is; and back.
-std::uint32_t shorten_normal(std::uint32_t octahedral, unsigned bits);
-std::uint32_t lengthen_normal(std::uint32_t shortened, unsigned bits);
+/// An octahedral normal (octahedral.h) in 2 x `bits` bits, 10 or 12, u in the lower ones, the nearest that there is;
+/// and back.
+template <unsigned bits>
+std::uint32_t shorten_normal(std::uint32_t octahedral);
+template <unsigned bits>
+std::uint32_t lengthen_normal(std::uint32_t shortened);
 
 }  // namespace splice

@@ -71,7 +71,7 @@ PointNode unpack(const PackedPointNode& packed) {
     node.major = float_from_half(packed.major);
     node.minor = minor_of(packed.ratio, node.major);
     node.sphere_radius = float_from_half(packed.sphere_radius);
-    node.normal = lengthen_normal(packed.frame & kNormalMask, kNormalBits);
+    node.normal = lengthen_normal<kNormalBits>(packed.frame & kNormalMask);
     node.major_axis = axis_at(packed.frame >> 24, tangents_of(decode_octahedral(node.normal)));
     std::copy_n(packed.colour, 3, node.colour);
     node.cone_angle = packed.cone_angle;
@@ -84,7 +84,7 @@ PointNode unpack(const PackedPointNode& packed) {
 void round_place(PointNode& node) {
     const auto place = pack_place(node.position);
     unpack_place({place[0], place[1]}, node.position);
-    node.normal = lengthen_normal(shorten_normal(node.normal, kNormalBits), kNormalBits);
+    node.normal = lengthen_normal<kNormalBits>(shorten_normal<kNormalBits>(node.normal));
 }
 
 void round_axis(PointNode& node) {
@@ -103,8 +103,8 @@ PackedPointNode pack_point_node(const PointNode& node) {
     std::ranges::copy(pack_place(node.position), packed.place);
     packed.major = half_length(node.major);
     packed.sphere_radius = half_length(node.sphere_radius);
-    const std::uint32_t normal = shorten_normal(node.normal, kNormalBits);
-    const TangentFrame frame = tangents_of(decode_octahedral(lengthen_normal(normal, kNormalBits)));
+    const std::uint32_t normal = shorten_normal<kNormalBits>(node.normal);
+    const TangentFrame frame = tangents_of(decode_octahedral(lengthen_normal<kNormalBits>(normal)));
     packed.frame = normal | direction_of(decode_octahedral(node.major_axis), frame) << 24;
     packed.ratio = ratio_of(node.minor, float_from_half(packed.major));
     std::copy_n(node.colour, 3, packed.colour);

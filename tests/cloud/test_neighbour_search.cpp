@@ -92,24 +92,45 @@ TEST_CASE("only the points that are asked for are searched") {
     CHECK(one.of(6).front() == kNoNeighbour);
 }
 
+TEST_CASE("a bound from the block before loses no neighbours") {
+    // From the dense patch to the sparse one; the search of the first block of the second is bounded by the first's.
+    std::vector<Vec3f> points = sphere_points(64, 7);
+    for (Vec3f& point : points)
+        point *= 1e-3f;
+    for (const Vec3f& point : sphere_points(64, 8))
+        points.emplace_back(point + Vec3f(3, 0, 0));
+    check_against_kd_tree(points, 16);
+    // So near to each other that squared distances are 0.
+    for (Vec3f& point : points)
+        point *= 1e-24f;
+    const NeighbourSearch search(points);
+    NeighbourSearch::Lists lists;
+    for (std::size_t block = 0; block < search.blocks(); ++block)
+        search.find(block, 16, lists);
+    CHECK(lists.of(15).back() != kNoNeighbour);
+}
+
 TEST_CASE("the processor's vectors find what plain code finds, bit by bit") {
     const std::vector<Vec3f> points = unit_cloud(sphere_points(kBlockPoints * 40, 5)).positions;
     std::vector<PointBlock> blocks(points.size() / kBlockPoints);
+    std::vector<Box3> boxes(blocks.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         PointBlock& block = blocks[i / kBlockPoints];
+        Box3& box = boxes[i / kBlockPoints];
         const std::size_t place = i % kBlockPoints;
         block.x[place] = points[i].x();
         block.y[place] = points[i].y();
         block.z[place] = points[i].z();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const float value = points[i][static_cast<Eigen::Index>(axis)];
-            block.low[axis] = place == 0 ? value : std::min(block.low[axis], value);
-            block.high[axis] = place == 0 ? value : std::max(block.high[axis], value);
+            box.low[axis] = place == 0 ? value : std::min(box.low[axis], value);
+            box.high[axis] = place == 0 ? value : std::max(box.high[axis], value);
         }
     }
+    const NearFunctions plain = near_functions(false), wide = near_functions();
     for (const unsigned k : {3u, 8u, 16u, 17u, 64u}) {
         const std::size_t stride = (k + kListStep - 1) / kListStep * kListStep;
-        const auto search = [&](AddNearPoints add) {
+        const auto search = [&](const NearFunctions& functions) {
             struct alignas(64) Line {
                 std::array<Neighbour, kListStep> entries;
             };
@@ -123,16 +144,29 @@ TEST_CASE("the processor's vectors find what plain code finds, bit by bit") {
             lists.reach.fill(1e28f);
             lists.reach[3] = -1;  // not asked for
             for (std::size_t b = 0; b < blocks.size(); ++b)
-                add(blocks[7], blocks[b], static_cast<std::uint32_t>(b * kBlockPoints), b == 7, lists);
+                functions.add(blocks[7], blocks[b], boxes[b], static_cast<std::uint32_t>(b * kBlockPoints), b == 7,
+                              lists);
             std::vector<Neighbour> found;
-            for (std::size_t q = 0; q < kBlockPoints; ++q)
+            for (std::size_t q = 0; q < kBlockPoints; ++q) {
+                functions.settle(lists, q);
                 found.insert(found.end(), lists.first + q * stride, lists.first + q * stride + k);
+            }
             return found;
         };
-        const auto plain = search(near_points_adder(NearVectors::kNone));
-        CHECK(search(near_points_adder(NearVectors::k256)) == plain);
-        CHECK(search(near_points_adder(NearVectors::k512)) == plain);
-        CHECK(plain[3 * k] == kNoNeighbour);
-        CHECK(plain[4 * k] != kNoNeighbour);
+        const auto expected = search(plain);
+        CHECK(search(wide) == expected);
+        CHECK(expected[3 * k] == kNoNeighbour);
+        CHECK(expected[4 * k] != kNoNeighbour);
     }
+    BoxGroup group;
+    for (std::size_t i = 0; i < kGroupBoxes; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            group.low[axis][i] = boxes[i].low[axis];
+            group.high[axis][i] = boxes[i].high[axis];
+        }
+    for (const float farthest : {0.0f, 0.001f, 0.01f, 0.1f, 10.0f})
+        CHECK(wide.near_boxes(group, boxes[9], farthest) == plain.near_boxes(group, boxes[9], farthest));
+    CHECK(plain.near_boxes(group, boxes[2], 0) != 0);
+    CHECK(plain.near_boxes(group, boxes[2], 0) != 0xff);
+    CHECK(plain.near_boxes(group, boxes[9], 10) == 0xff);
 }

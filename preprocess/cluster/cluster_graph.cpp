@@ -4,19 +4,29 @@
 
 namespace splice {
 
-ClusterGraph::ClusterGraph(const FaceGraph& faces)
-    : arena_(faces.size() * kQuad), slots_(faces.size()), changed_(faces.size(), 0), node_(faces.face_of_slot) {
-    for (std::uint32_t s = 0; s < faces.size(); ++s)
-        slots_[s] = {s, 0, 0, s};
-    // A face has at most three neighbours, so its first block never overflows.
-    const auto append = [&](std::uint32_t slot, std::uint32_t neighbour, float length) {
-        arena_[slot * kQuad + slots_[slot].size++] = {neighbour, length};
-    };
-    for (const FaceGraph::Link& l : faces.links) {
-        append(l.slot[0], l.slot[1], l.length);
-        append(l.slot[1], l.slot[0], l.length);
+ClusterGraph::ClusterGraph(const FaceGraph& faces) : ClusterGraph(faces.face_of_slot, faces.links, faces.size()) {}
+
+ClusterGraph::ClusterGraph(std::vector<std::uint32_t> nodes, std::span<const FaceGraph::Link> links, std::size_t leaves,
+                           std::vector<format::MergeNode> tree)
+    : leaves_(leaves),
+      first_class_(2 * links.size() > kQuad * nodes.size() ? 1 : 0),
+      arena_((nodes.size() * kQuad) << first_class_),
+      slots_(nodes.size()),
+      changed_(nodes.size(), 0),
+      node_(std::move(nodes)),
+      tree_(std::move(tree)) {
+    for (std::uint32_t s = 0; s < slots_.size(); ++s)
+        slots_[s] = {s << first_class_, 0, first_class_, s};
+    for (const FaceGraph::Link& l : links) {
+        append(slots_[l.slot[0]], {l.slot[1], l.length});
+        append(slots_[l.slot[1]], {l.slot[0], l.length});
     }
-    tree_.reserve(faces.size());
+    tree_.reserve(tree_.size() + slots_.size());
+}
+
+void ClusterGraph::append(Slot& slot, const ClusterLink& link) {
+    grow(slot, slot.size + 1);
+    first_link(slot)[slot.size++] = link;
 }
 
 /// Makes room for `size` links in the list of `slot`; those there are kept.
@@ -93,9 +103,10 @@ float ClusterGraph::merge(std::uint32_t a, std::uint32_t b, float cost, std::uin
     free_[gone.size_class].push_back(gone.block);
     gone.size = 0;
     gone.parent = a;
+    const std::uint32_t united = next_node();
     tree_.push_back({{node_[a], node_[b]}, cost, phase});
     changed_[a] = changed_[b] = now();
-    node_[a] = static_cast<std::uint32_t>(slots() + tree_.size() - 1);
+    node_[a] = united;
     return border;
 }
 

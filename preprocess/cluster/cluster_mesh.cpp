@@ -4,6 +4,7 @@
 
 #include "preprocess/cluster/cluster_graph.h"
 #include "preprocess/cluster/cluster_metric.h"
+#include "preprocess/cluster/contract_blocks.h"
 #include "preprocess/cluster/face_graph.h"
 #include "preprocess/cluster/merge_heap.h"
 #include "preprocess/cluster/patch_assembly.h"
@@ -13,11 +14,13 @@
 #include "preprocess/model_format/error.h"
 
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace splice {
 namespace {
@@ -34,6 +37,10 @@ constexpr double kMinMaxArea = 16;       // median triangle areas, so that coars
 constexpr float kMaxSpread = 0.1745f;    // radians, 10 degrees
 constexpr float kCrumb = 0.125f;         // of the largest area
 constexpr float kCrumbSlack = 1.25f;     // how far a patch may outgrow the largest area by taking in crumbs
+
+// Clusters of kBlock at a time are contracted by themselves, up to each of these costs in turn; then all together.
+constexpr std::uint32_t kBlock = 1u << 13;
+constexpr float kBlockCosts[] = {0.0f, 0.25f};
 
 class Stopwatch {
   public:
@@ -121,7 +128,6 @@ struct Surface {
     Settings settings;
     std::vector<float> scores;  // by slot; empty if not scored
     float threshold = kRoughScore;
-    ClusterGraph graph;
 };
 
 Surface measure_surface(const IndexedMesh& mesh, const ClusterOptions& options) {
@@ -129,53 +135,77 @@ Surface measure_surface(const IndexedMesh& mesh, const ClusterOptions& options) 
     FaceRoughness roughness;
     std::vector<FaceGraph::Link> links;
     const std::vector<std::uint32_t> order = order_faces(mesh);
+    // Kept apart: waiting for the last piece of a loop over faces, a thread would start on all of the links.
     tbb::parallel_invoke([&] { links = link_faces(mesh, order, find_face_adjacency(mesh, order)); },
                          [&] {
-                             surface.faces = measure_faces(mesh, order);
-                             surface.settings = resolve(options, surface.faces);
-                             if (surface.settings.scored()) roughness = measure_roughness(mesh, surface.faces);
+                             tbb::this_task_arena::isolate([&] {
+                                 surface.faces = measure_faces(mesh, order);
+                                 surface.settings = resolve(options, surface.faces);
+                                 if (surface.settings.scored()) roughness = measure_roughness(mesh, surface.faces);
+                             });
                          });
     surface.faces.links = std::move(links);
-    tbb::parallel_invoke([&] { surface.graph = ClusterGraph(surface.faces); },
-                         [&] {
-                             if (surface.settings.scored()) surface.scores = score_faces(surface.faces, roughness);
-                         });
+    if (surface.settings.scored()) surface.scores = score_faces(surface.faces, roughness);
     if (surface.settings.share) surface.threshold = score_at_share(surface.scores, *surface.settings.share);
     return surface;
 }
 
+/// The state of both phases.
 struct Clusters {
     ClusterGraph graph;
     ClusterTable table;
-    std::vector<std::uint8_t> surfel;  // by slot: on the rough side, to be drawn as surfels
+    std::vector<std::uint8_t> surfel;         // by slot: on the rough side, to be drawn as surfels
+    std::vector<std::uint32_t> slot_of_face;  // by slot of FaceGraph
 
-    explicit Clusters(Surface& surface)
-        : graph(std::move(surface.graph)),
-          table(surface.faces, surface.scores),
-          surfel(surface.faces.size(), surface.settings.all_surfels) {
-        for (std::size_t s = 0; s < surface.scores.size(); ++s)
-            surfel[s] = surface.scores[s] > surface.threshold;
-    }
+    explicit Clusters(ClusterLevel level)
+        : graph(std::move(level.nodes), level.links, level.slot_of_face.size(), std::move(level.tree)),
+          table(std::move(level.clusters)),
+          surfel(std::move(level.rough)),
+          slot_of_face(std::move(level.slot_of_face)) {}
 };
+
+/// Every face a cluster.
+ClusterLevel single_faces(const Surface& surface) {
+    const FaceGraph& faces = surface.faces;
+    ClusterLevel level;
+    level.clusters = ClusterTable(faces, surface.scores).take();
+    level.rough.assign(faces.size(), surface.settings.all_surfels);
+    for (std::size_t s = 0; s < surface.scores.size(); ++s)
+        level.rough[s] = surface.scores[s] > surface.threshold;
+    level.nodes = faces.face_of_slot;
+    level.links = faces.links;
+    level.slot_of_face.resize(faces.size());
+    std::iota(level.slot_of_face.begin(), level.slot_of_face.end(), 0u);
+    return level;
+}
 
 bool everything(std::uint32_t) {
     return true;
 }
 
 template <class Tick>
-void run_phase_one(const IndexedMesh& mesh, const Surface& surface, Clusters& clusters, const Tick& tick) {
+Clusters run_phase_one(const IndexedMesh& mesh, const Surface& surface, const Tick& tick) {
     const Settings& settings = surface.settings;
+    ClusterLevel level = single_faces(surface);
     if (settings.thesis) {
+        Clusters clusters(std::move(level));
         ThesisMetric metric(mesh, surface.faces, clusters.table, settings.max_area);
         contract(clusters.graph, metric, settings.phase1_cost, 1, everything, tick);
-        return;
+        return clusters;
     }
     ClusterLimits limits{settings.max_area, settings.max_faces, kMaxSpread};
+    for (const float cost : kBlockCosts) {
+        if (level.nodes.size() <= kBlock) break;
+        level = contract_blocks(level, limits, std::min(cost, settings.phase1_cost), kBlock);
+        tick(level.tree.size());
+    }
+    Clusters clusters(std::move(level));
     FlatnessMetric flatness(clusters.table, clusters.surfel, limits);
     contract(clusters.graph, flatness, settings.phase1_cost, 1, everything, tick);
     limits.max_area *= kCrumbSlack;
     CrumbMetric crumbs(clusters.table, clusters.surfel, surface.threshold, limits, kCrumb * settings.max_area);
     contract(clusters.graph, crumbs, settings.phase1_cost, 1, everything, tick);
+    return clusters;
 }
 
 /// The clusters that triangles stay for, by mean score, adding up to the share; the rest become surfels.
@@ -186,7 +216,8 @@ std::vector<std::uint8_t> surfels_by_share(const Clusters& clusters, double shar
         const Cluster& cluster = clusters.table[s];
         if (clusters.graph.alive(s)) patches.push_back({cluster.score_sum / cluster.shape.area, s, cluster.faces});
     }
-    const auto target = static_cast<std::uint64_t>(std::llround(share * static_cast<double>(slots)));
+    const auto target =
+        static_cast<std::uint64_t>(std::llround(share * static_cast<double>(clusters.slot_of_face.size())));
     std::vector<std::uint8_t> surfel(slots, 1);
     for (const std::uint32_t slot : choose_flattest(std::move(patches), target))
         surfel[slot] = 0;
@@ -196,7 +227,7 @@ std::vector<std::uint8_t> surfels_by_share(const Clusters& clusters, double shar
 template <class Tick>
 void run_phase_two(const Settings& settings, Clusters& clusters, const Tick& tick) {
     ClusterGraph& graph = clusters.graph;
-    const std::size_t before = graph.slots() + graph.tree().size();
+    const std::uint32_t before = graph.next_node();
     const bool mark_by_merging = settings.thesis && settings.hybrid && !settings.share;
     SizeMetric metric(clusters.table, settings.max_area, settings.thesis ? kNever : settings.max_area);
     contract(
@@ -213,17 +244,14 @@ PatchSet cluster_mesh(const IndexedMesh& mesh, const ClusterOptions& options, co
     check(options);
     Surface surface = measure_surface(mesh, options);
     const Settings& settings = surface.settings;
-    Clusters clusters(surface);
-
-    const auto tick = [&](std::size_t) {
-        const auto merged = static_cast<double>(clusters.graph.tree().size());
-        if (progress) progress("cluster", merged / static_cast<double>(surface.faces.size()));
+    const auto tick = [&](std::size_t merged) {
+        if (progress) progress("cluster", static_cast<double>(merged) / static_cast<double>(surface.faces.size()));
     };
-    run_phase_one(mesh, surface, clusters, tick);
+    Clusters clusters = run_phase_one(mesh, surface, tick);
     if (settings.share) clusters.surfel = surfels_by_share(clusters, *settings.share);
     if (!settings.all_triangles) run_phase_two(settings, clusters, tick);
     if (progress) progress("cluster", 1.0);
-    PatchSet set = assemble_patches(mesh, surface.faces, clusters.graph, clusters.surfel);
+    PatchSet set = assemble_patches(mesh, surface.faces, clusters.graph, clusters.slot_of_face, clusters.surfel);
 
     Stopwatch watch;
     if (settings.hybrid) set.stats.selection_auc = selection_auc(judge_places(mesh, surface.faces), set);

@@ -33,6 +33,8 @@ class ClusterTable {
                             scores.empty() ? 0.0f : faces.area[s] * scores[s]};
         }
     }
+    explicit ClusterTable(std::vector<Cluster> clusters) : clusters_(std::move(clusters)) {}
+
     void prefetch(std::uint32_t slot) const { __builtin_prefetch(&clusters_[slot], 1); }
     const Cluster& operator[](std::uint32_t slot) const { return clusters_[slot]; }
     /// E_shape of merging a and b over a common border of `length`.
@@ -49,6 +51,8 @@ class ClusterTable {
         into.normal_sum += gone.normal_sum;
         into.score_sum += gone.score_sum;
     }
+
+    std::vector<Cluster> take() { return std::move(clusters_); }
 
   private:
     std::vector<Cluster> clusters_;

@@ -23,7 +23,7 @@ namespace splice {
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// Contracts `graph` while the cheapest pair costs at most `threshold`. `eligible(slot)` tells who may take part;
-/// `tick(n)` is called after n merges, some 200 times. Returns the number of merges.
+/// `tick(n)` is called some 200 times, with the number of merges in the tree. Returns the number of merges.
 ///
 /// Each pair is looked after by the cluster of the two that changed last (the lower slot if neither has), and only the
 /// first of the pairs that a cluster looks after waits in the queue. It stays a lower bound for the others: they were
@@ -37,7 +37,7 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
         metric.prefetch(slot);
     };
 
-    PairQueue queue;
+    PairQueue queue(graph.slots());
     /// Queues the first pair that `owner` looks after, of those beyond `passed`.
     const auto offer_next = [&](std::uint32_t owner, const QueuedPair& passed) {
         QueuedPair first = QueuedPair::last();
@@ -95,7 +95,7 @@ std::size_t contract(ClusterGraph& graph, Metric& metric, float threshold, std::
         }
         metric.merge(a, b, graph.merge(a, b, pair.cost(), phase));
         offer_next(a, QueuedPair::first());
-        if (++merges % tick_every == 0) tick(merges);
+        if (++merges % tick_every == 0) tick(graph.tree().size());
     }
     return merges;
 }

@@ -60,7 +60,13 @@ class QueuedPair {
 
 class PairQueue {
   public:
-    PairQueue() : first_chunk_(kBuckets, kNone), occupied_(kBuckets / 64, 0) {}
+    /// For about `pairs` at a time. Their number makes no difference but to speed: a chunk of each bucket that is
+    /// hardly used would take more cache than the pairs do.
+    explicit PairQueue(std::size_t pairs)
+        : buckets_(std::clamp(std::bit_ceil(pairs / kChunk + 1), std::size_t{64}, std::size_t{1} << 12)),
+          scale_(static_cast<float>(buckets_) / (kHighest - kLowest)),
+          first_chunk_(buckets_, kNone),
+          occupied_(buckets_ / 64, 0) {}
 
     void push(const QueuedPair& pair) {
         const std::size_t bucket = bucket_of(pair.cost());
@@ -95,7 +101,6 @@ class PairQueue {
 
   private:
     // Costs are of the order of 1; what lies outside shares the first or last bucket, which only costs time.
-    static constexpr std::size_t kBuckets = std::size_t{1} << 12;
     static constexpr float kLowest = -2, kHighest = 2;
     static constexpr std::uint32_t kNone = 0xffffffffu;
     static constexpr std::size_t kChunk = 15;
@@ -106,10 +111,9 @@ class PairQueue {
         std::uint32_t next;
     };
 
-    static std::size_t bucket_of(float cost) {
-        constexpr float kScale = static_cast<float>(kBuckets) / (kHighest - kLowest);
+    std::size_t bucket_of(float cost) const {
         // The first bucket is open from the start; nothing waits in it.
-        return static_cast<std::size_t>(std::clamp((cost - kLowest) * kScale, 0.0f, static_cast<float>(kBuckets - 1)));
+        return static_cast<std::size_t>(std::clamp((cost - kLowest) * scale_, 0.0f, static_cast<float>(buckets_ - 1)));
     }
 
     void store(std::size_t bucket, const QueuedPair& pair) {
@@ -182,6 +186,8 @@ class PairQueue {
         heap_[i] = pair;
     }
 
+    std::size_t buckets_;
+    float scale_;                   // buckets by cost
     std::vector<QueuedPair> heap_;  // of all buckets up to open_
     std::size_t open_ = 0;
     std::vector<Chunk> chunks_;

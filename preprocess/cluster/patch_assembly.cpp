@@ -19,17 +19,17 @@ std::vector<std::uint32_t> cluster_of_slots(const ClusterGraph& graph) {
 }  // namespace
 
 PatchSet assemble_patches(const IndexedMesh& mesh, const FaceGraph& faces, ClusterGraph& graph,
+                          const std::vector<std::uint32_t>& slot_of_face,
                           const std::vector<std::uint8_t>& surfel_slot) {
     const std::vector<std::uint32_t> cluster_of_slot = cluster_of_slots(graph);
     PatchSet set;
-    std::vector<std::uint32_t> patch_of_slot(faces.size());
-    for (std::uint32_t s = 0; s < faces.size(); ++s) {
+    std::vector<std::uint32_t> patch_of_slot(graph.slots());
+    for (std::uint32_t s = 0; s < graph.slots(); ++s) {
         if (!graph.alive(s)) continue;
         patch_of_slot[s] = static_cast<std::uint32_t>(set.patches.size());
         ClusterPatch patch;
         patch.representation = surfel_slot[s] ? format::Representation::kSurfels : format::Representation::kTriangles;
         patch.merge_root = graph.node(s);
-        patch.material = mesh.triangle_material.empty() ? 0 : mesh.triangle_material[faces.face_of_slot[s]];
         set.patches.push_back(patch);
     }
 
@@ -38,8 +38,10 @@ PatchSet assemble_patches(const IndexedMesh& mesh, const FaceGraph& faces, Clust
     std::vector<Vec3d> normal_sum(set.patches.size(), Vec3d::Zero());
     std::vector<double> area(set.patches.size(), 0), turn(set.patches.size(), 0);
     for (std::size_t s = 0; s < faces.size(); ++s) {
-        const std::uint32_t p = patch_of_slot[cluster_of_slot[s]];
-        set.triangle_patch[faces.face_of_slot[s]] = p;
+        const std::uint32_t p = patch_of_slot[cluster_of_slot[slot_of_face[s]]], face = faces.face_of_slot[s];
+        set.triangle_patch[face] = p;
+        if (!mesh.triangle_material.empty())
+            set.patches[p].material = mesh.triangle_material[face];  // the same for all
         ++set.patch_begin[p + 1];
         area[p] += static_cast<double>(faces.area[s]);
         normal_sum[p] += static_cast<double>(faces.area[s]) * faces.normal[s].cast<double>();
@@ -52,7 +54,7 @@ PatchSet assemble_patches(const IndexedMesh& mesh, const FaceGraph& faces, Clust
             set.patches[p].mean_normal = normal_sum[p].normalized().cast<float>();
     }
     for (std::size_t s = 0; s < faces.size(); ++s) {
-        const std::uint32_t p = patch_of_slot[cluster_of_slot[s]];
+        const std::uint32_t p = patch_of_slot[cluster_of_slot[slot_of_face[s]]];
         const float angle = angle_between(faces.normal[s], set.patches[p].mean_normal);
         turn[p] += static_cast<double>(faces.area[s] * angle * angle);
     }

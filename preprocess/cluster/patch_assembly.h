@@ -9,10 +9,10 @@
 
 namespace splice {
 
-/// One patch a live cluster, in slot order, which is along the space-filling curve. `surfel_slot` tells, for each live
-/// slot, whether the patch is drawn as surfels. Takes the graph's merge tree. Leaves stats.seconds_* and
-/// stats.selection_auc alone.
+/// One patch a live cluster, in slot order, which is along the space-filling curve. `slot_of_face` is, by slot of
+/// `faces`, the slot of `graph` that the face began in. `surfel_slot` tells, for each live slot, whether the patch is
+/// drawn as surfels. Takes the graph's merge tree. Leaves stats.seconds_* and stats.selection_auc alone.
 PatchSet assemble_patches(const IndexedMesh& mesh, const FaceGraph& faces, ClusterGraph& graph,
-                          const std::vector<std::uint8_t>& surfel_slot);
+                          const std::vector<std::uint32_t>& slot_of_face, const std::vector<std::uint8_t>& surfel_slot);
 
 }  // namespace splice

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace splice {
 namespace {
@@ -118,7 +119,13 @@ SurfaceGrid build_grid(const IndexedMesh& mesh, const FaceGraph& faces) {
 
     grid.cell_of_sample.resize(samples.size());
     grid.block_begin.assign(grid.box.count() + 1, 0);
+    // Counted first: growing would touch fresh memory several times.
     std::uint64_t open = ~std::uint64_t{0};
+    std::size_t cells = 0;
+    for (const std::uint64_t key : keys)
+        cells += std::exchange(open, key >> 32) != key >> 32 ? 1u : 0u;
+    grid.cells.reserve(cells);
+    open = ~std::uint64_t{0};
     for (const std::uint64_t key : keys) {
         if (key >> 32 != open) {
             open = key >> 32;

@@ -212,7 +212,7 @@ TEST_CASE("The pair queue yields pairs in order whatever the mix of pushes and p
         bool operator<(const Key& o) const { return std::tuple(cost, a, b) < std::tuple(o.cost, o.a, o.b); }
     };
     std::mt19937 random(9);
-    PairQueue queue;
+    PairQueue queue(200);
     std::multiset<Key> reference;
     std::set<std::uint32_t> stale_names;
     const auto stale = [&](const QueuedPair& pair) { return stale_names.count(pair.time()) != 0; };

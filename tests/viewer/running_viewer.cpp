@@ -3,8 +3,6 @@
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/mesh/write_mesh.h"
 #include "tests/cli/spawn.h"
-#include "tests/support/test_files.h"
-#include "tests/viewer/virtual_display.h"
 
 #include <catch2/catch.hpp>
 #include <sys/wait.h>
@@ -101,6 +99,23 @@ int RunningViewer::wait(double seconds) {
         usleep(50000);
     }
     return -1;
+}
+
+Stage::Stage(std::uint32_t segments) : display(VirtualDisplay::start()) {
+    if (display) write_mesh_file(folder / "knot.ply", segments);
+}
+
+void Stage::wait_for(const std::string& file) const {
+    REQUIRE(display->find_window());
+    REQUIRE(display->wait_for_title(file + " - splice-view"));
+}
+
+Stage::Run Stage::run_script(const std::string& script, const std::string& size) const {
+    write_text(folder / "script.txt", script);
+    RunningViewer viewer(folder.path(), display->name(),
+                         {"knot.ply", "--device", "cpu", "--validate", "--size", size, "--script", "script.txt"});
+    const int code = viewer.wait();
+    return {code, viewer.err()};
 }
 
 Picture scene_part(const Picture& window) {

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "engine/capture/png_file.h"
+#include "tests/support/test_files.h"
+#include "tests/viewer/virtual_display.h"
 
 #include <sys/types.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,6 +40,22 @@ class RunningViewer {
   private:
     std::filesystem::path folder_;
     pid_t process_ = -1;
+};
+
+/// What a test in a window needs: a display of its own, and a folder with a mesh, knot.ply.
+struct Stage {
+    explicit Stage(std::uint32_t segments = 60);
+    /// Requires a window that comes to show this file.
+    void wait_for(const std::string& file) const;
+    /// splice-view on the mesh, with validation, by this script.
+    struct Run {
+        int code;
+        std::string err;
+    };
+    Run run_script(const std::string& script, const std::string& size = "1000x600") const;
+
+    std::unique_ptr<VirtualDisplay> display;  // null where there is no Xvfb: nothing to test
+    TemporaryFolder folder;
 };
 
 /// Of a picture of the window: what is not interface.

@@ -2,9 +2,7 @@
 #include "engine/capture/png_file.h"
 #include "engine/scene/view.h"
 #include "tests/cli/spawn.h"
-#include "tests/support/test_files.h"
 #include "tests/viewer/running_viewer.h"
-#include "tests/viewer/virtual_display.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -14,16 +12,7 @@
 #include <vector>
 
 using namespace splice;
-using test::cropped;
-using test::difference;
-using test::kPanel;
-using test::kStatus;
-using test::read_text;
-using test::RunningViewer;
-using test::scene_part;
-using test::write_mesh_file;
-using test::write_model_file;
-using test::write_text;
+using namespace splice::test;
 
 namespace {
 
@@ -31,11 +20,11 @@ namespace {
 Picture captured_by(const std::filesystem::path& folder, const std::filesystem::path& line) {
     const std::string command = read_text(line);
     REQUIRE(command.starts_with("splice-capture "));
-    const std::string path = test::program("splice-capture").parent_path().string();
-    const test::Outcome outcome =
-        test::run({"/bin/sh",
-                   {"-c", "PATH='" + path + "':$PATH; " + command.substr(0, command.find('\n')) + " --quiet"},
-                   folder});
+    const std::string path = program("splice-capture").parent_path().string();
+    const Outcome outcome =
+        run({"/bin/sh",
+             {"-c", "PATH='" + path + "':$PATH; " + command.substr(0, command.find('\n')) + " --quiet"},
+             folder});
     INFO(command << outcome.err);
     REQUIRE(outcome.exit_code == 0);
     return read_png(folder / "capture.png");
@@ -44,27 +33,25 @@ Picture captured_by(const std::filesystem::path& folder, const std::filesystem::
 }  // namespace
 
 TEST_CASE("without a display it says so in a line and points to splice-capture") {
-    const test::TemporaryFolder folder;
-    const test::Outcome outcome = test::run({.program = test::program("splice-view"), .in_child = [] {
-                                                 unsetenv("DISPLAY");
-                                                 unsetenv("WAYLAND_DISPLAY");
-                                             }});
+    const TemporaryFolder folder;
+    const Outcome outcome = run({.program = program("splice-view"), .in_child = [] {
+                                     unsetenv("DISPLAY");
+                                     unsetenv("WAYLAND_DISPLAY");
+                                 }});
     CHECK(outcome.exit_code == 1);
-    CHECK(test::line_count(outcome.err) == 1);
+    CHECK(line_count(outcome.err) == 1);
     CHECK_THAT(outcome.err, Catch::StartsWith("splice-view: no display") && Catch::Contains("splice-capture"));
 }
 
 TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, screenshot, close") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply");
+    const Stage stage;
+    if (!stage.display) return;
+    const auto& [display, folder] = stage;
     write_model_file(folder / "knot.ply", folder / "knot.splice");
     write_mesh_file(folder / "dropped.ply", 120);  // long enough to bake that the title can be seen to change
     RunningViewer viewer(folder.path(), display->name(),
                          {"knot.splice", "--device", "cpu", "--validate", "--size", "1000x700"});
-    REQUIRE(display->find_window());
-    REQUIRE(display->wait_for_title("knot.splice - splice-view"));
+    stage.wait_for("knot.splice");
 
     // Loaded: something is there beside the background, and the interface stands where it should.
     const Picture loaded = display->still_picture();
@@ -168,15 +155,14 @@ TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, s
     CHECK(viewer.wait() == 0);
     // The broken file's line is the only thing that may be said.
     const std::string err = viewer.err();
-    CHECK((err.empty() || (test::line_count(err) == 1 && err.find("broken.ply") != std::string::npos)));
+    CHECK((err.empty() || (line_count(err) == 1 && err.find("broken.ply") != std::string::npos)));
     CHECK(std::filesystem::exists(folder / "splice" / "view.json"));
 }
 
 TEST_CASE("a script does the same, and its screenshots are splice-capture's pictures of the same camera") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply");
+    const Stage stage;
+    if (!stage.display) return;
+    const auto& [display, folder] = stage;
     write_model_file(folder / "knot.ply", folder / "knot.splice");
     write_text(folder / "tour.txt",
                "# every kind of hand\n"
@@ -215,10 +201,9 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
     CHECK(difference(read_png(folder / "turn-001.png"), read_png(folder / "turn-002.png")) > 0.02);
 
     // The saved scene shows what the window showed.
-    const test::Outcome outcome =
-        test::run({test::program("splice-capture"),
-                   {"saved.json", "-o", "saved.png", "--backend", "auto", "--show", "triangles"},
-                   folder.path()});
+    const Outcome outcome = run({program("splice-capture"),
+                                 {"saved.json", "-o", "saved.png", "--backend", "auto", "--show", "triangles"},
+                                 folder.path()});
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     CHECK(difference(read_png(folder / "saved.png"), read_png(folder / "side.png")) == 0);
@@ -226,13 +211,12 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
 }
 
 TEST_CASE("of a model larger than --memory no more is held, and pictures become whole while they are shown") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 800);
-    const test::Outcome baked = test::run({test::program("splice-bake"),
-                                           {(folder / "knot.ply").string(), "-o", (folder / "knot.splice").string(),
-                                            "--representation", "surfels", "--h-max", "0.004", "--quiet"}});
+    const Stage stage(800);
+    if (!stage.display) return;
+    const auto& [display, folder] = stage;
+    const Outcome baked = run({program("splice-bake"),
+                               {(folder / "knot.ply").string(), "-o", (folder / "knot.splice").string(),
+                                "--representation", "surfels", "--h-max", "0.004", "--quiet"}});
     REQUIRE(baked.exit_code == 0);
     write_text(folder / "script.txt",
                "wait\nstatistics far.json\nscreenshot-window far-window.png\nscreenshot far.png\nkey escape\n"
@@ -257,15 +241,13 @@ TEST_CASE("of a model larger than --memory no more is held, and pictures become 
 }
 
 TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves the last good ones") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    std::filesystem::copy(test::source_file("shaders/glsl"), folder / "glsl", std::filesystem::copy_options::recursive);
+    const Stage stage(40);
+    if (!stage.display) return;
+    const auto& [display, folder] = stage;
+    std::filesystem::copy(source_file("shaders/glsl"), folder / "glsl", std::filesystem::copy_options::recursive);
     RunningViewer viewer(folder.path(), display->name(),
                          {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--shaders", "glsl"});
-    REQUIRE(display->find_window());
-    REQUIRE(display->wait_for_title("knot.ply - splice-view"));
+    stage.wait_for("knot.ply");
     display->picture_when([&](const Picture&) { return viewer.out().find("compiled anew") != std::string::npos; });
     display->key("Escape");
     const Picture before = display->still_picture();
@@ -294,10 +276,10 @@ TEST_CASE("usage: what is not understood ends the run with 2 before a window ope
     };
     for (const Wrong& wrong : {Wrong{{"--present-mode", "fast"}, "--present-mode"}, Wrong{{"--size", "0x3"}, "--size"},
                                Wrong{{"--nonsense"}, "--nonsense"}}) {
-        const test::Outcome outcome = test::run({test::program("splice-view"), wrong.arguments});
+        const Outcome outcome = run({program("splice-view"), wrong.arguments});
         CHECK(outcome.exit_code == 2);
-        CHECK(test::line_count(outcome.err) == 1);
+        CHECK(line_count(outcome.err) == 1);
         CHECK_THAT(outcome.err, Catch::Contains(wrong.said));
     }
-    CHECK(test::run({test::program("splice-view"), {"--help"}}).exit_code == 0);
+    CHECK(run({program("splice-view"), {"--help"}}).exit_code == 0);
 }

@@ -1,7 +1,6 @@
 // What happens to a window, and to the device and the surface behind it: in a real window, with the validation layers.
 #include "engine/capture/png_file.h"
 #include "tests/cli/spawn.h"
-#include "tests/support/test_files.h"
 #include "tests/viewer/running_viewer.h"
 #include "tests/viewer/virtual_display.h"
 
@@ -9,163 +8,118 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
-#include <utility>
-#include <vector>
 
 using namespace splice;
-using test::cropped;
-using test::difference;
-using test::kPanel;
-using test::kStatus;
-using test::read_text;
-using test::RunningViewer;
-using test::scene_part;
-using test::write_mesh_file;
-using test::write_text;
-
-namespace {
-
-// Exit code and errors of a run by a script.
-std::pair<int, std::string> run_script(const test::TemporaryFolder& folder, const std::string& display,
-                                       const std::string& script) {
-    write_text(folder / "script.txt", script);
-    RunningViewer viewer(folder.path(), display,
-                         {"knot.ply", "--device", "cpu", "--validate", "--size", "1000x600", "--script", "script.txt"});
-    const int code = viewer.wait();
-    return {code, viewer.err()};
-}
-
-}  // namespace
+using namespace splice::test;
 
 TEST_CASE("a lost device is opened again once, the second loss ends the run") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply");
-    const auto [code, err] =
-        run_script(folder, display->name(), "wait\nscreenshot a.png\nlose-device\nwait\nscreenshot b.png\nquit\n");
+    const Stage stage;
+    if (!stage.display) return;
+    const auto [code, err] = stage.run_script("wait\nscreenshot a.png\nlose-device\nwait\nscreenshot b.png\nquit\n");
     CHECK(code == 0);
     CHECK_THAT(err, Catch::Contains("The device was lost and opened again"));
-    CHECK(difference(read_png(folder / "a.png"), read_png(folder / "b.png")) == 0);
-    const auto [second_code, second_err] =
-        run_script(folder, display->name(), "wait\nlose-device\nwait\nlose-device\nwait\nquit\n");
+    CHECK(difference(read_png(stage.folder / "a.png"), read_png(stage.folder / "b.png")) == 0);
+    const auto [second_code, second_err] = stage.run_script("wait\nlose-device\nwait\nlose-device\nwait\nquit\n");
     CHECK(second_code == 1);
     CHECK_THAT(second_err, Catch::Contains("lost twice"));
 }
 
 TEST_CASE("a lost surface is made anew, each time") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply");
-    const auto [code, err] = run_script(
-        folder, display->name(),
+    const Stage stage;
+    if (!stage.display) return;
+    const auto [code, err] = stage.run_script(
         "wait\nscreenshot-window a.png\nlose-surface\nkey escape\nwait\nscreenshot-window b.png\n"
         "drag left 600 200 640 220\nlose-surface\nkey escape\nwait\nlose-surface\nwait\nscreenshot c.png\nquit\n");
     CHECK(code == 0);
-    CHECK(test::line_count(err) == 3);
+    CHECK(line_count(err) == 3);
     CHECK_THAT(err, Catch::Contains("The window's surface was lost and made anew"));
-    const Picture before = read_png(folder / "a.png"), after = read_png(folder / "b.png");
+    const Picture before = read_png(stage.folder / "a.png"), after = read_png(stage.folder / "b.png");
     CHECK(difference(scene_part(before), scene_part(after)) == 0);
-    CHECK(difference(scene_part(before), read_png(folder / "c.png")) > 0.03);
+    CHECK(difference(scene_part(before), read_png(stage.folder / "c.png")) > 0.03);
 }
 
 TEST_CASE("a surface that is lost before anything was shown on it ends the run") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    const auto [code, err] = run_script(folder, display->name(), "lose-surface\nwait\nquit\n");
+    const Stage stage(40);
+    if (!stage.display) return;
+    const auto [code, err] = stage.run_script("lose-surface\nwait\nquit\n");
     CHECK(code == 1);
     CHECK_THAT(err, Catch::Contains("before anything was shown"));
 }
 
 TEST_CASE("on a monitor of another scale, panels and letters follow, and come back as they were") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply");
-    const auto [code, err] =
-        run_script(folder, display->name(),
-                   "wait\nscreenshot-window one-window.png\nscreenshot one.png\n"
-                   "monitor-scale 1.5\nkey escape\nwait\nscreenshot-window larger-window.png\nscreenshot larger.png\n"
-                   "monitor-scale 1\nkey escape\nwait\nscreenshot-window back-window.png\nscreenshot back.png\nquit\n");
+    const Stage stage;
+    if (!stage.display) return;
+    const auto [code, err] = stage.run_script(
+        "wait\nscreenshot-window one-window.png\nscreenshot one.png\n"
+        "monitor-scale 1.5\nkey escape\nwait\nscreenshot-window larger-window.png\nscreenshot larger.png\n"
+        "monitor-scale 1\nkey escape\nwait\nscreenshot-window back-window.png\nscreenshot back.png\nquit\n");
     CHECK(code == 0);
     CHECK(err == "");
     // At 1.5 a window of 1000 is a narrow one, whose panel is 216 wide.
-    const Picture one = read_png(folder / "one.png"), larger = read_png(folder / "larger.png");
+    const Picture one = read_png(stage.folder / "one.png"), larger = read_png(stage.folder / "larger.png");
     CHECK(one.width == 1000 - kPanel);
     CHECK(one.height == 600 - kStatus);
     CHECK(larger.width == 1000 - 324);
     CHECK(larger.height == 600 - 39);
-    const Picture window = read_png(folder / "larger-window.png");
+    const Picture window = read_png(stage.folder / "larger-window.png");
     CHECK(difference(cropped(window, 324, 0, larger.width, larger.height), larger) == 0);
-    CHECK(difference(read_png(folder / "back.png"), one) == 0);
+    CHECK(difference(read_png(stage.folder / "back.png"), one) == 0);
     // Times differ; the first lists of the panel do not.
-    const auto lists = [&](const char* name) { return cropped(read_png(folder / name), 0, 0, kPanel, 200); };
+    const auto lists = [&](const char* name) { return cropped(read_png(stage.folder / name), 0, 0, kPanel, 200); };
     CHECK(difference(lists("back-window.png"), lists("one-window.png")) == 0);
     CHECK(difference(lists("larger-window.png"), lists("one-window.png")) > 0.05);
 }
 
 TEST_CASE("as small as a window gets, it waits and comes back") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    write_text(folder / "script.txt",
-               "wait\nscreenshot a.png\nresize 1 1\nframes 5\nresize 30 20\nframes 5\nresize 800 600\nframes 5\nwait\n"
-               "screenshot b.png\nquit\n");
-    RunningViewer viewer(folder.path(), display->name(),
-                         {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--script", "script.txt"});
-    CHECK(viewer.wait() == 0);
-    CHECK(viewer.err() == "");
-    CHECK(read_png(folder / "a.png").width == read_png(folder / "b.png").width);
+    const Stage stage(40);
+    if (!stage.display) return;
+    const auto [code, err] = stage.run_script(
+        "wait\nscreenshot a.png\nresize 1 1\nframes 5\nresize 30 20\nframes 5\nresize 800 600\nframes 5\nwait\n"
+        "screenshot b.png\nquit\n",
+        "800x600");
+    CHECK(code == 0);
+    CHECK(err == "");
+    CHECK(read_png(stage.folder / "a.png").width == read_png(stage.folder / "b.png").width);
 }
 
 TEST_CASE("minimised, it draws nothing, what was asked for meanwhile is there once it is back") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    RunningViewer viewer(folder.path(), display->name(),
+    const Stage stage(40);
+    if (!stage.display) return;
+    RunningViewer viewer(stage.folder.path(), stage.display->name(),
                          {"knot.ply", "--device", "cpu", "--validate", "--size", "1000x600"});
-    REQUIRE(display->find_window());
-    REQUIRE(display->wait_for_title("knot.ply - splice-view"));
-    const Picture shown = display->still_picture();
-    display->say_minimised(true);
-    display->key("v");
-    CHECK(difference(display->still_picture(), shown) == 0);
-    display->say_minimised(false);
-    const Picture back = display->picture_when(
+    stage.wait_for("knot.ply");
+    const Picture shown = stage.display->still_picture();
+    stage.display->say_minimised(true);
+    stage.display->key("v");
+    CHECK(difference(stage.display->still_picture(), shown) == 0);
+    stage.display->say_minimised(false);
+    const Picture back = stage.display->picture_when(
         [&](const Picture& now) { return difference(scene_part(now), scene_part(shown)) > 0.01; });
     CHECK(difference(scene_part(back), scene_part(shown)) > 0.01);
-    display->ask_to_close();
+    stage.display->ask_to_close();
     CHECK(viewer.wait() == 0);
     CHECK(viewer.err() == "");
 }
 
 TEST_CASE("sizes that change faster than frames are shown: the last one counts") {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
-    RunningViewer viewer(folder.path(), display->name(),
+    const Stage stage(40);
+    if (!stage.display) return;
+    RunningViewer viewer(stage.folder.path(), stage.display->name(),
                          {"knot.ply", "--device", "cpu", "--validate", "--size", "1000x600"});
-    REQUIRE(display->find_window());
-    REQUIRE(display->wait_for_title("knot.ply - splice-view"));
+    stage.wait_for("knot.ply");
     for (unsigned round = 0; round < 3; ++round) {
         for (unsigned i = 0; i < 25; ++i)
-            display->resize(1100 - i * 37 % 400, 300 + i * 53 % 500, 0.002 * (i % 4));
+            stage.display->resize(1100 - i * 37 % 400, 300 + i * 53 % 500, 0.002 * (i % 4));
         const unsigned width = 940 + 20 * round, height = 500 + 30 * round;
-        display->resize(width, height);
-        const Picture last = display->picture_when([&](const Picture& now) { return now.width == width; });
+        stage.display->resize(width, height);
+        const Picture last = stage.display->picture_when([&](const Picture& now) { return now.width == width; });
         REQUIRE(last.width == width);
         REQUIRE(last.height == height);
         // Drawn into every corner: white background, not what the server fills new windows with.
         for (const unsigned y : {2U, height - kStatus - 3})
             CHECK(last.rgba[4 * (std::size_t{y} * width + width - 3)] == 255);
     }
-    display->ask_to_close();
+    stage.display->ask_to_close();
     CHECK(viewer.wait() == 0);
     CHECK(viewer.err() == "");
 }
@@ -174,10 +128,8 @@ namespace {
 
 // What `frames` frames of a moving camera leave behind, by the statistics before and after them.
 void check_growth(int frames) {
-    const auto display = test::VirtualDisplay::start();
-    if (!display) return;
-    const test::TemporaryFolder folder;
-    write_mesh_file(folder / "knot.ply", 40);
+    const Stage stage(40);
+    if (!stage.display) return;
     // Detail that follows the load of the machine would allocate at any time.
     std::string script = "set coarser off\nwait\npress left\n";
     const auto turn = [&](int count) {
@@ -189,12 +141,12 @@ void check_growth(int frames) {
     script += "statistics before.json\n";
     turn(frames);
     script += "statistics after.json\nquit\n";
-    write_text(folder / "script.txt", script);
-    RunningViewer viewer(folder.path(), display->name(),
+    write_text(stage.folder / "script.txt", script);
+    RunningViewer viewer(stage.folder.path(), stage.display->name(),
                          {"knot.ply", "--device", "cpu", "--size", "420x300", "--script", "script.txt"});
     REQUIRE(viewer.wait(900) == 0);
-    const auto before = nlohmann::json::parse(read_text(folder / "before.json"));
-    const auto after = nlohmann::json::parse(read_text(folder / "after.json"));
+    const auto before = nlohmann::json::parse(read_text(stage.folder / "before.json"));
+    const auto after = nlohmann::json::parse(read_text(stage.folder / "after.json"));
     const auto growth = [&](const char* name) {
         REQUIRE(before.at(name).get<std::int64_t>() > 0);
         return after.at(name).get<std::int64_t>() - before.at(name).get<std::int64_t>();

@@ -138,10 +138,8 @@ class Renderer {
     std::shared_ptr<const GpuModel> load(const ModelView& model, const Paging& paging = {});
 
     /// Pipelines take long to make. Begins to make, on other threads, those that frames of such settings under these
-    /// lights need, if it can be told; those that the last frame did without, as others may not. Pictures are the same
-    /// without.
+    /// lights need, if it can be told. Pictures are the same without.
     void make_for(const CaptureSettings& settings, const Lighting& lighting);
-    void make_ahead();
 
     Frame render(const Scene& scene, const CaptureSettings& settings);
 

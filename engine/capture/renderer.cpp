@@ -239,10 +239,6 @@ void Renderer::make_for(const CaptureSettings& settings, const Lighting& lightin
     if (backend.techniques) engine.passes.splats.make_for(frame, *backend.techniques);
 }
 
-void Renderer::make_ahead() {
-    implementation_->passes.splats.make_ahead();
-}
-
 Frame Renderer::render(const Scene& scene, const CaptureSettings& settings) {
     Implementation& engine = *implementation_;
     check_settings(settings, engine.device.limits());

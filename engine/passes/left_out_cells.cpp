@@ -58,8 +58,4 @@ bool LeftOutCells::make_lacking() {
     return true;
 }
 
-void LeftOutCells::make_ahead() {
-    if (left_out_) programs_.make_in_turn(settings_, segment_programs(variant_));
-}
-
 }  // namespace splice

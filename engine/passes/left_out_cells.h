@@ -26,8 +26,6 @@ class LeftOutCells {
 
     /// After the frame was executed: whether it lacks cells, the pipelines for which are made now.
     bool make_lacking();
-    /// Begins to make, on another thread, what the frame left out.
-    void make_ahead();
 
   private:
     SplatPrograms& programs_;

@@ -47,10 +47,9 @@ class SplatPasses {
     /// After the frame was executed: whether some of it was left out, what that lacked being made now. Then it is to be
     /// added and executed again.
     bool make_lacking() { return left_out_.make_lacking(); }
-    /// Begins to make pipelines on other threads: those that a frame of these settings needs, if it is drawn by these
-    /// techniques in one batch; those that the last frame did without.
+    /// Begins to make, on other threads, the pipelines that a frame of these settings needs, if it is drawn by these
+    /// techniques in one batch.
     void make_for(const FrameSettings& settings, const Techniques& techniques);
-    void make_ahead() { left_out_.make_ahead(); }
 
   private:
     using Stage = SplatPrograms::Stage;

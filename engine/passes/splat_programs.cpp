@@ -69,15 +69,6 @@ void SplatPrograms::make_together(const FrameSettings& settings, std::span<const
         makers_.emplace_back(std::move(making));
 }
 
-void SplatPrograms::make_in_turn(const FrameSettings& settings, std::span<const Program> programs) {
-    std::vector<Making> making = begin_making(settings, programs);
-    if (making.empty()) return;
-    makers_.emplace_back([making = std::move(making)](const std::stop_token& stop) mutable {
-        for (Making& one : making)
-            if (!stop.stop_requested()) one();
-    });
-}
-
 bool SplatPrograms::is_made(const FrameSettings& settings, const Program& program) const {
     const auto known = pipelines_.find(key_of(settings, program));
     return known != pipelines_.end() && known->second.wait_for(std::chrono::seconds(0)) == std::future_status::ready;

@@ -56,9 +56,8 @@ class SplatPrograms {
     };
     void set_targets(const Targets& targets) { targets_ = targets; }
 
-    /// Begins to make those pipelines that are not made yet, each on a thread of its own, or in turn on one thread.
+    /// Begins to make those pipelines that are not made yet, each on a thread of its own.
     void make_together(const FrameSettings& settings, std::span<const Program> programs);
-    void make_in_turn(const FrameSettings& settings, std::span<const Program> programs);
     bool is_made(const FrameSettings& settings, const Program& program) const;
     /// Throws what making it threw.
     void wait_for(const FrameSettings& settings, const Program& program) { pipeline(settings, program); }

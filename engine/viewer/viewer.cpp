@@ -168,7 +168,6 @@ void Viewer::loop() {
             note_start(state_.scene ? "first picture" : "first frame");
             if (state_.scene) state_.first_picture_s = start_steps_.back().second;
         }
-        if (pictures_whole_) graphics_->renderer->make_ahead();
     }
 }
 

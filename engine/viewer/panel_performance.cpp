@@ -67,6 +67,8 @@ void draw_performance_section(PanelContext& context) {
     ImGui::Text("%.1f frames/s", state.measured.frames_per_second);
     if (state.measured.stats.overlap_mean > 0)
         ImGui::Text("overlap %.2f surfels a pixel", state.measured.stats.overlap_mean);
+    else
+        ImGui::TextDisabled("overlap: in the view of that name");
     const CutStats& cut = state.measured.stats.cut;
     if (cut.tau > 0) {
         ImGui::Text("levels chosen in %.2f ms, %s nodes", cut.select_ms + cut.gather_ms,

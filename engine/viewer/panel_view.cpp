@@ -153,7 +153,15 @@ void draw_light_section(PanelContext& context) {
     Lighting& lighting = state.scene->loaded.scene.lighting;
     bool changed = edit_colour("Ambient", lighting.ambient, ImGuiColorEditFlags_Float);
     changed |= edit_number("Specular", lighting.specular, 0, 2);
-    if (lighting.specular > 0) changed |= edit_number("Shininess", lighting.shininess, 1, 256, "%.0f");
+    if (lighting.specular > 0) {
+        changed |= edit_number("Shininess", lighting.shininess, 1, 256, "%.0f");
+        int model = static_cast<int>(lighting.highlight);
+        changed |= ImGui::Combo("Highlights", &model, "Blinn-Phong\0Phong\0");
+        lighting.highlight = static_cast<HighlightModel>(model);
+    }
+    changed |= edit_number("Rim", lighting.rim, 0, 2);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("White towards outlines, whatever the lights");
+    if (lighting.rim > 0) changed |= edit_number("Narrowness", lighting.rim_exponent, 1, 16, "%.1f");
     std::size_t removed = lighting.lights.size();
     for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));

@@ -287,6 +287,8 @@ void Viewer::run_command(const Command& command) {
                  continue;
              if (pixels.rgba.empty()) throw DeviceError("this device cannot read its window");
              write_png(arguments[0], {pixels.width, pixels.height, std::move(pixels.rgba)});
+             // A script's next picture of the window shall not have the message.
+             if (!options_.script) report("Wrote " + arguments[0], false);
          }},
         {"camera-line",
          [&] {

@@ -54,9 +54,8 @@ void select(std::span<PlacedPoint> points, std::size_t nth, std::size_t axis) {
         points = points.subspan(count);
         nth -= count;
     }
-    std::nth_element(
-        points.begin(), points.begin() + static_cast<std::ptrdiff_t>(nth), points.end(),
-        [&](const PlacedPoint& p, const PlacedPoint& q) { return p.position[axis] < q.position[axis]; });
+    std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(nth), points.end(),
+                     [&](const PlacedPoint& p, const PlacedPoint& q) { return p.position[axis] < q.position[axis]; });
 }
 
 }  // namespace

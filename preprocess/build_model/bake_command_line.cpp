@@ -198,7 +198,8 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
            "--neighbours", options.cloud.neighbours,
            "Nearest neighbours that define the plane of a point without a normal, 6..64; more smooth out noise, "
            "and small features with it; default " +
-               std::to_string(options.cloud.neighbours))
+               std::to_string(kUsualNeighbours) + ", or " + std::to_string(kNoisyNeighbours) +
+               " if noise is as wide as the spacing")
         ->check(integer_between(6, 64))
         ->type_name("COUNT")
         ->group("Point clouds");

@@ -76,6 +76,7 @@ std::string cloud_json(const CloudStats& cloud, const BakeStats& stats, const Ba
     for (const auto& entry : kCloudCounts)
         json["cloud"][entry.key] = cloud.*entry.count;
     json["cloud"]["components"] = cloud.components;
+    json["cloud"]["plane_neighbours"] = cloud.plane_neighbours;
     json["patches"] = {{"triangle", 0}, {"surfel", stats.cluster.surfel_patches}};
     json["output"] = {{"triangles", 0}, {"surfels", result.surfels}, {"file_bytes", result.file_bytes}};
     json["seconds"] = {{"read", stats.seconds_read},

@@ -87,6 +87,7 @@ Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats&
 
     CloudSurface surface = timed(progress, "surface", counts.seconds_surface,
                                  [&] { return estimate_surface(unit, options.cloud, progress); });
+    counts.plane_neighbours = surface.plane_neighbours;
     counts.estimated_normals = surface.estimated_normals;
     counts.border_points = surface.border_points;
     counts.isolated_points = surface.isolated_points;

@@ -26,6 +26,7 @@ struct CloudStats {
     std::uint64_t withheld_points = 0;   // dropped: marked as deleted
     std::uint64_t duplicate_points = 0;  // dropped
     std::uint64_t points = 0;            // the others: one surfel each
+    int plane_neighbours = 0;
     std::uint64_t estimated_normals = 0, components = 0, border_points = 0, isolated_points = 0;  // cloud_surface.h
     double seconds_sort = 0, seconds_surface = 0, seconds_orient = 0;
 };

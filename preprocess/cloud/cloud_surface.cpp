@@ -24,6 +24,11 @@ namespace {
 constexpr double kLineShare = 0.25;
 constexpr unsigned kMoreNeighbours = 4;  // times as many
 
+// Where noise is as wide as the spacing, the nearest neighbours lie all around and not in a plane: the least standard
+// deviation is above this share of the second, and at more than so many of the points.
+constexpr double kSpatial = 0.5, kSpatialPoints = 0.75;
+constexpr std::size_t kSampledBlocks = 256;
+
 // Neighbours that rise more steeply from the plane than this (60 degrees) belong to another sheet, or are noise.
 constexpr float kSteepest = 0.5f;
 
@@ -56,8 +61,10 @@ class Estimator {
     Estimator(const UnitCloud& cloud, const CloudOptions& options)
         : points_(cloud.positions),
           normals_(cloud.normals),
-          k_(static_cast<unsigned>(options.neighbours)),
-          search_(cloud.positions) {}
+          search_(cloud.positions),
+          k_(static_cast<unsigned>(options.neighbours != 0 ? options.neighbours : usual_neighbours())) {
+        surface_.plane_neighbours = static_cast<int>(k_);
+    }
 
     CloudSurface estimate(const Progress& progress) {
         surface_.disks = large_vector<CloudDisk>(points_.size());
@@ -79,6 +86,25 @@ class Estimator {
     }
 
   private:
+    int usual_neighbours() const {
+        if (!normals_.empty()) return kUsualNeighbours;
+        NeighbourSearch::Lists lists;
+        Vicinity vicinity;
+        std::size_t points = 0, spatial = 0;
+        for (std::size_t block = 0; block < search_.blocks(); block += search_.blocks() / kSampledBlocks + 1) {
+            search_.find(block, kUsualNeighbours, lists);
+            const std::size_t first = block * NeighbourSearch::kBlock;
+            for (std::size_t q = 0; q < NeighbourSearch::kBlock && first + q < points_.size(); ++q) {
+                look_around(first + q, lists.of(q), vicinity);
+                const LeastSpread found = spread_of(vicinity, kUsualNeighbours);
+                ++points;
+                spatial += found.least > kSpatial * kSpatial * found.middle;
+            }
+        }
+        const bool noisy = static_cast<double>(spatial) > kSpatialPoints * static_cast<double>(points);
+        return noisy ? kNoisyNeighbours : kUsualNeighbours;
+    }
+
     void estimate_blocks(const tbb::blocked_range<std::size_t>& blocks) {
         NeighbourSearch::Lists lists, more;
         Vicinity vicinity;
@@ -162,8 +188,8 @@ class Estimator {
         reach_[point] = (points_[stored.back()] - points_[point]).norm();
     }
 
-    // The direction in which point and neighbours spread least.
-    Plane fit_plane(const Vicinity& vicinity, std::size_t most) const {
+    // How the point and its nearest neighbours spread.
+    LeastSpread spread_of(const Vicinity& vicinity, std::size_t most) const {
         const std::size_t neighbours = std::min(most, vicinity.count);
         const Moments m = functions_.moments(vicinity, neighbours);
         const double count = static_cast<double>(neighbours + 1);
@@ -173,7 +199,12 @@ class Estimator {
         Eigen::Matrix3d covariance;  // its upper half
         covariance << spread(m.xx, m.x, m.x), spread(m.xy, m.x, m.y), spread(m.xz, m.x, m.z), 0, spread(m.yy, m.y, m.y),
             spread(m.yz, m.y, m.z), 0, 0, spread(m.zz, m.z, m.z);
-        const LeastSpread found = least_spread(covariance);
+        return least_spread(covariance);
+    }
+
+    // Across the direction in which they spread least.
+    Plane fit_plane(const Vicinity& vicinity, std::size_t most) const {
+        const LeastSpread found = spread_of(vicinity, most);
         Plane plane;
         plane.is_line = found.middle <= kLineShare * kLineShare * found.most;
         plane.normal = found.direction.cast<float>();
@@ -268,9 +299,9 @@ class Estimator {
     static constexpr float kLonelyRadius = 0.01f;  // of a cloud of one point
 
     const std::vector<Vec3f>&points_, &normals_;
-    unsigned k_;
     VicinityFunctions functions_ = vicinity_functions();
     NeighbourSearch search_;
+    unsigned k_;  // neighbours that define a plane
     CloudSurface surface_;
     std::vector<float> reach_;  // distance to the last stored neighbour
     std::atomic<std::uint64_t> border_points_{0}, isolated_points_{0}, estimated_normals_{0};

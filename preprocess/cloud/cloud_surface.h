@@ -15,8 +15,11 @@ namespace splice {
 
 struct CloudOptions {
     /// Nearest neighbours that define a point's plane, 6..64. More smooth out noise, and small features with it.
-    int neighbours = 16;
+    /// 0: kUsualNeighbours, or kNoisyNeighbours in a cloud whose noise is as wide as its spacing.
+    int neighbours = 0;
 };
+
+inline constexpr int kUsualNeighbours = 16, kNoisyNeighbours = 64;
 
 struct CloudDisk {
     Vec3f normal;        // unit
@@ -32,6 +35,7 @@ using StoredNeighbours = std::array<std::uint32_t, kStoredNeighbours>;
 struct CloudSurface {
     std::vector<CloudDisk> disks;  // one a point
     std::vector<StoredNeighbours> neighbours;
+    int plane_neighbours = 0;  // that defined a point's plane
     std::uint64_t estimated_normals = 0;
     std::uint64_t border_points = 0;    // with no neighbour on one side
     std::uint64_t isolated_points = 0;  // much farther from their neighbours than those are from theirs, or than is

@@ -23,7 +23,7 @@ LeastSpread by_eigen(const Eigen::Matrix3d& covariance) {
     const Vec3d direction = solver.eigenvectors().col(0);
     const Eigen::Vector3d spread = solver.eigenvalues().cwiseMax(0.0);
     const bool usable = direction.allFinite() && direction.norm() > 0.5;
-    return {usable ? Vec3d(direction.normalized()) : Vec3d(Vec3d::UnitZ()), spread[1], spread[2]};
+    return {usable ? Vec3d(direction.normalized()) : Vec3d(Vec3d::UnitZ()), spread[0], spread[1], spread[2]};
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ LeastSpread least_spread(const Eigen::Matrix3d& m) {
     // The other two roots: of lambda^2 - sum lambda + product.
     const double sum = trace - least, product = minors - least * sum;
     const double half = std::sqrt(std::max(sum * sum / 4 - product, 0.0));
-    return {crosses[best] / length, std::max(sum / 2 - half, 0.0), sum / 2 + half};
+    return {crosses[best] / length, least, std::max(sum / 2 - half, 0.0), sum / 2 + half};
 }
 
 }  // namespace splice

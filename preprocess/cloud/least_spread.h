@@ -6,8 +6,8 @@
 namespace splice {
 
 struct LeastSpread {
-    Vec3d direction;              // unit
-    double middle = 0, most = 0;  // the other two eigenvalues, at least 0
+    Vec3d direction;                         // unit
+    double least = 0, middle = 0, most = 0;  // the eigenvalues, at least 0
 };
 
 /// Of a symmetric, positive semidefinite matrix; of its lower triangle nothing is read. Where no direction is least,

@@ -414,6 +414,7 @@ TEST_CASE("splice-bake makes a model of a point cloud and says what it dropped")
     CHECK(stats["cloud"]["nonfinite_points"] == 1);
     CHECK(stats["cloud"]["duplicate_points"] == 1);
     CHECK(stats["cloud"]["estimated_normals"] == 400);
+    CHECK(stats["cloud"]["plane_neighbours"] == 12);
     CHECK(stats["output"]["surfels"] == 400);
     const Outcome info =
         test::run({.program = test::program("splice-info"), .arguments = {"scan.splice"}, .folder = folder.path()});

@@ -116,6 +116,27 @@ TEST_CASE("normals of a sphere and a torus are found and face outward") {
     CHECK(worst > std::cos(0.3f));
 }
 
+TEST_CASE("where noise is as wide as the spacing, planes are of more neighbours and normals still face outward") {
+    // The spacing is 0.0125; within 16 neighbours' reach the points fill space.
+    std::vector<Vec3f> points = sphere_points(20000, 1);
+    std::mt19937 random(2);
+    std::normal_distribution<float> noise(0, 0.02f);
+    for (Vec3f& point : points)
+        point *= 1 + noise(random) / 0.5f;
+    const UnitCloud cloud = unit_cloud(std::move(points));
+    const auto inward = [&](const CloudOptions& options, int neighbours) {
+        const CloudSurface surface = oriented_surface(cloud, options);
+        CHECK(surface.plane_neighbours == neighbours);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+            count += surface.disks[i].normal.dot(cloud.positions[i]) <= 0;
+        return count;
+    };
+    CHECK(inward({}, kNoisyNeighbours) < 20);
+    CHECK(inward({.neighbours = kUsualNeighbours}, kUsualNeighbours) > 1000);
+    CHECK(estimate_surface(unit_cloud(sphere_points(20000, 1)), {}).plane_neighbours == kUsualNeighbours);
+}
+
 TEST_CASE("two thin sheets back to back face away from each other") {
     // A slab a fifth of the spacing thick would be too much to ask; one of twice the spacing is not.
     PointCloud cloud;

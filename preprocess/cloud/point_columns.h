@@ -78,7 +78,8 @@ PointCloud gather_points(const PointColumns& columns);
 /// A PointColumns' column for column `index` of a table of doubles with `width` columns.
 inline ScalarColumn table_column(const std::vector<double>& table, std::size_t width, std::size_t index,
                                  double scale = 1) {
-    return {reinterpret_cast<const char*>(table.data() + index),
+    // An empty table has no memory to point into.
+    return {table.empty() ? "" : reinterpret_cast<const char*>(table.data() + index),
             width * sizeof(double),
             PlyType::kFloat64,
             false,

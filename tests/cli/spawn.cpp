@@ -54,18 +54,23 @@ void read_all(Channel out, Channel err, Outcome& outcome) {
     }
 }
 
-[[noreturn]] void become(const Spawn& spawn, Channel out, Channel err) {
+std::vector<char*> argument_list(const Spawn& spawn) {
+    std::vector<char*> list = {const_cast<char*>(spawn.program.c_str())};
+    for (const std::string& argument : spawn.arguments)
+        list.push_back(const_cast<char*>(argument.c_str()));
+    list.push_back(nullptr);
+    return list;
+}
+
+// In the child: nothing is allocated here, as another thread may have held the allocator's lock when it was forked.
+[[noreturn]] void become(const Spawn& spawn, char* const* arguments, Channel out, Channel err) {
     dup2(out.write_end, STDOUT_FILENO);
     dup2(err.write_end, STDERR_FILENO);
     for (const int descriptor : {out.read_end, out.write_end, err.read_end, err.write_end})
         close(descriptor);
     if (!spawn.folder.empty() && chdir(spawn.folder.c_str()) != 0) _exit(126);
     if (spawn.in_child) spawn.in_child();
-    std::vector<char*> arguments = {const_cast<char*>(spawn.program.c_str())};
-    for (const std::string& argument : spawn.arguments)
-        arguments.push_back(const_cast<char*>(argument.c_str()));
-    arguments.push_back(nullptr);
-    execvp(spawn.program.c_str(), arguments.data());
+    execvp(spawn.program.c_str(), arguments);
     _exit(127);
 }
 
@@ -74,9 +79,10 @@ void read_all(Channel out, Channel err, Outcome& outcome) {
 Outcome run(const Spawn& spawn) {
     const Channel out = open_pipe();
     const Channel err = spawn.stderr_is_terminal ? open_terminal() : open_pipe();
+    const std::vector<char*> arguments = argument_list(spawn);
     const pid_t process = fork();
     if (process < 0) throw std::runtime_error("fork failed");
-    if (process == 0) become(spawn, out, err);
+    if (process == 0) become(spawn, arguments.data(), out, err);
     close(out.write_end);
     close(err.write_end);
     if (spawn.while_it_runs) spawn.while_it_runs(process);

@@ -1,6 +1,7 @@
 // The frame's render graph as compiled: a box a pass, those of one render pass in a frame, an arrow for each resource
 // handed on. The pass under the cursor is lit, with what it reads and writes, here and in the plot of times.
 #include "engine/viewer/panels.h"
+#include "preprocess/build_model/counted.h"
 
 #include <imgui.h>
 
@@ -92,7 +93,7 @@ void describe(const graph::FramePicture& picture, std::uint32_t index, const Pas
     }
     for (const graph::FramePicture::Group& group : picture.groups)
         if (!group.passes.empty() && group.passes.front() == index && !group.barriers.empty())
-            ImGui::Text("%zu barriers before", group.barriers.size());
+            ImGui::TextUnformatted((counted(group.barriers.size(), "barrier") + " before").c_str());
     ImGui::EndTooltip();
 }
 

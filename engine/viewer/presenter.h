@@ -51,6 +51,9 @@ class Presenter {
 
     gpu::PresentMode mode() const { return swapchain_.mode(); }
 
+    /// Throws SurfaceLostError where the window is gone.
+    void check_surface() const { swapchain_.check_surface(); }
+
     /// One frame in a window of so many pixels; what no picture covers is grey where there are no pictures, else
     /// undefined. False if nothing could be shown (no area, or the window changed meanwhile): try again later. With
     /// `pixels`, what is shown is read back, too.

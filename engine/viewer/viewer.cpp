@@ -85,6 +85,8 @@ void Viewer::run() {
             recover();
             report(std::string("The device was lost and opened again (") + error.what() + ")", true);
         } catch (const gpu::SurfaceLostError& error) {
+            if (gpu::is_lost(graphics_->device, window_.create_surface(instance_).handle()))
+                throw SystemError("the window is gone: another program destroyed it");
             // Windows may lose theirs any number of times, but one that nothing was shown on is not worth another.
             if (!shown_since_recovery_)
                 throw DeviceError(std::string("the window's surface was lost before anything was shown on it: ") +
@@ -129,6 +131,7 @@ void Viewer::loop() {
         play_script();
         std::move(window_.events().begin(), window_.events().end(), std::back_inserter(input_));
         window_.events().clear();
+        check_surface();
         take_input();
         if (state_.navigation.advance(std::min(now_ - before, kLongestSeconds), state_.camera)) moved_at_ = now_;
         poll_job();
@@ -169,6 +172,13 @@ void Viewer::loop() {
             if (state_.scene) state_.first_picture_s = start_steps_.back().second;
         }
     }
+}
+
+// Windows that another program destroyed are not announced, and nothing is shown while nothing changes.
+void Viewer::check_surface() {
+    if (now_ - surface_checked_at_ < kIdleSeconds) return;
+    surface_checked_at_ = now_;
+    graphics_->presenter.check_surface();
 }
 
 void Viewer::note_start(const char* step) {

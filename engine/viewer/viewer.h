@@ -58,6 +58,7 @@ class Viewer {
     };
 
     void loop();
+    void check_surface();
     void recover();
     double idle_seconds() const;
     bool at_rest() const;
@@ -122,9 +123,10 @@ class Viewer {
     bool dragging_divider_ = false;
     double now_ = 0, moved_at_ = -1e9;  // seconds
     double published_at_ = -1e9;        // the measurements
-    int redraw_ = 0;                    // frames until the interface is at rest
-    bool pictures_whole_ = false;       // drawn, at full resolution, of all surfels
-    bool refining_ = false;             // surfels are being read that a picture lacks
+    double surface_checked_at_ = 0;
+    int redraw_ = 0;               // frames until the interface is at rest
+    bool pictures_whole_ = false;  // drawn, at full resolution, of all surfels
+    bool refining_ = false;        // surfels are being read that a picture lacks
     bool quit_ = false;
     bool device_was_lost_ = false, shown_since_recovery_ = false;
     InterfaceContent content_;

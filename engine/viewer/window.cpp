@@ -1,5 +1,6 @@
 #include "engine/viewer/window.h"
 
+#include "engine/viewer/x_errors.h"
 #include "engine/vulkan/handle.h"
 #include "preprocess/model_format/error.h"
 
@@ -94,6 +95,7 @@ struct Window::Callbacks {
 Window::Window(const WindowOptions& options) : title_(options.title) {
     constexpr const char* advice = "; splice-capture renders without a window";
     if (glfwInit() == GLFW_FALSE) throw SystemError("no display to open a window on: " + last_error() + advice);
+    ignore_missing_windows();
     try {
         if (glfwVulkanSupported() == GLFW_FALSE)
             throw SystemError("this display has no Vulkan: " + last_error() + advice);

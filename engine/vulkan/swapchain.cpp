@@ -36,6 +36,11 @@ std::optional<PresentMode> present_mode_of_name(std::string_view name) {
     return std::nullopt;
 }
 
+bool is_lost(const Device& device, VkSurfaceKHR surface) {
+    VkSurfaceCapabilitiesKHR ignored;
+    return vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device.physical(), surface, &ignored) == VK_ERROR_SURFACE_LOST_KHR;
+}
+
 Swapchain::Swapchain(Device& device, VkSurfaceKHR surface) : device_(device), surface_(surface) {
     choose_format();
 }
@@ -65,21 +70,26 @@ bool Swapchain::fits(VkExtent2D window) const {
     return !out_of_date_ && window.width == window_.width && window.height == window_.height;
 }
 
-bool Swapchain::recreate(VkExtent2D window, PresentMode mode) {
-    VkSurfaceCapabilitiesKHR capabilities;
-    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
+VkSurfaceCapabilitiesKHR Swapchain::capabilities() const {
+    VkSurfaceCapabilitiesKHR found;
+    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &found),
           "asking what the window can show");
+    return found;
+}
+
+bool Swapchain::recreate(VkExtent2D window, PresentMode mode) {
+    const VkSurfaceCapabilitiesKHR found = capabilities();
     // UINT32_MAX: the surface takes the size of its images.
-    extent_ = capabilities.currentExtent;
+    extent_ = found.currentExtent;
     if (extent_.width == UINT32_MAX) {
-        extent_ = {std::clamp(window.width, capabilities.minImageExtent.width, capabilities.maxImageExtent.width),
-                   std::clamp(window.height, capabilities.minImageExtent.height, capabilities.maxImageExtent.height)};
+        extent_ = {std::clamp(window.width, found.minImageExtent.width, found.maxImageExtent.width),
+                   std::clamp(window.height, found.minImageExtent.height, found.maxImageExtent.height)};
     }
     if (window.width == 0 || window.height == 0 || extent_.width == 0 || extent_.height == 0) return false;
     device_.wait_idle();
     mode_ = has_mode(device_.physical(), surface_, mode) ? mode : PresentMode::fifo;
     window_ = window;
-    create(capabilities);
+    create(found);
     create_images();
     out_of_date_ = false;
     return true;

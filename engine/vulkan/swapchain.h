@@ -36,6 +36,9 @@ inline constexpr std::array<PresentModeName, 4> kPresentModeNames{
 
 std::optional<PresentMode> present_mode_of_name(std::string_view name);
 
+/// Whether nothing can be shown on it any more: where it is new, its window is gone.
+bool is_lost(const Device& device, VkSurfaceKHR surface);
+
 class Swapchain {
   public:
     /// The device was opened for the surface; both must outlive the swapchain. Has no images before recreate().
@@ -49,6 +52,9 @@ class Swapchain {
     bool recreate(VkExtent2D window, PresentMode mode);
     /// Whether there are images, of that size, and presenting did not find them out of date.
     bool fits(VkExtent2D window) const;
+
+    /// Throws SurfaceLostError where the window is gone, which nothing else says while nothing is shown.
+    void check_surface() const { capabilities(); }
 
     /// The index of the image to draw next; nothing: recreate and try again.
     std::optional<uint32_t> acquire();
@@ -65,6 +71,7 @@ class Swapchain {
     VkImageView view(uint32_t index) const { return views_[index].get(); }
 
   private:
+    VkSurfaceCapabilitiesKHR capabilities() const;
     void choose_format();
     void create(const VkSurfaceCapabilitiesKHR& capabilities);
     void create_images();

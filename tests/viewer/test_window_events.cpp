@@ -46,6 +46,25 @@ TEST_CASE("a surface that is lost before anything was shown on it ends the run")
     CHECK_THAT(err, Catch::Contains("before anything was shown"));
 }
 
+TEST_CASE("a window that another program destroys ends the run, at rest and in motion") {
+    const Stage stage(40);
+    if (!stage.display) return;
+    const bool in_motion = GENERATE(false, true);
+    RunningViewer viewer(stage.folder.path(), stage.display->name(),
+                         {"knot.ply", "--device", "cpu", "--size", "1000x600"});
+    stage.wait_for("knot.ply");
+    stage.display->still_picture();
+    if (in_motion) {
+        stage.display->move(600, 300);
+        stage.display->press(1);
+        stage.display->move(640, 310);
+    }
+    stage.display->destroy_window();
+    if (in_motion) stage.display->release(1);
+    CHECK(viewer.wait(20) == 1);
+    CHECK(viewer.err() == "splice-view: the window is gone: another program destroyed it\n");
+}
+
 TEST_CASE("on a monitor of another scale, panels and letters follow, and come back as they were") {
     const Stage stage;
     if (!stage.display) return;

@@ -326,6 +326,11 @@ void VirtualDisplay::ask_to_close() {
     settle();
 }
 
+void VirtualDisplay::destroy_window() {
+    XDestroyWindow(connection_->display, connection_->window);
+    settle();
+}
+
 double difference(const Picture& a, const Picture& b, int tolerance) {
     if (a.width != b.width || a.height != b.height || a.rgba.empty()) return 1;
     std::size_t different = 0;

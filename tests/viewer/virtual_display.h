@@ -51,6 +51,8 @@ class VirtualDisplay {
     /// True if the window took the files.
     bool drop(const std::filesystem::path& file, int x, int y);
     void ask_to_close();
+    /// What no program should do to another's window.
+    void destroy_window();
 
   private:
     struct Connection;

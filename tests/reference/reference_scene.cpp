@@ -95,8 +95,8 @@ struct ReferenceScene::Impl {
         rtcReleaseDevice(device);
     }
 
-    /// `ray` in mesh space. The distance along it, or kNothing.
-    float cast(const Ray& ray, RTCRayHit& hit) const {
+    /// `ray` in mesh space. The distance along it of the first surface beyond `from`, or kNothing.
+    float cast(const Ray& ray, RTCRayHit& hit, float from = 0) const {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         hit.ray.org_x = static_cast<float>(ray.origin.x);
@@ -105,7 +105,7 @@ struct ReferenceScene::Impl {
         hit.ray.dir_x = static_cast<float>(ray.direction.x);
         hit.ray.dir_y = static_cast<float>(ray.direction.y);
         hit.ray.dir_z = static_cast<float>(ray.direction.z);
-        hit.ray.tnear = 0;
+        hit.ray.tnear = from;
         hit.ray.tfar = kNothing;
         hit.ray.time = 0;
         hit.ray.mask = ~0u;
@@ -127,18 +127,31 @@ struct ReferenceScene::Impl {
         return t == kNothing ? kNothing : static_cast<float>(t * -eye.direction.z);
     }
 
-    /// What the triangle that is met at one window position shows at another if it is moved there: its plane's depth.
-    float depth_moved(const ReferenceView& view, const glm::dmat4& to_mesh, const glm::dvec2& met_at,
-                      const glm::dvec2& shown_at) const {
+    /// What the triangles that are met at one window position show at another if they are moved there: their planes'
+    /// depths. Those behind the first count where they come to the front: a wall that folds back behind an outline is
+    /// hidden beside it, and beyond it is nearer than what hides it.
+    void include_moved(const ReferenceView& view, const glm::dmat4& to_mesh, const glm::dvec2& met_at,
+                       const glm::dvec2& shown_at, DepthRange& range) const {
         const Ray beside = in_mesh_space(pixel_ray(view, met_at.x, met_at.y), to_mesh);
-        RTCRayHit record;
-        const float t = cast(beside, record);
-        if (t == kNothing) return kNothing;
         const Ray eye = pixel_ray(view, shown_at.x, shown_at.y), ray = in_mesh_space(eye, to_mesh);
-        const glm::dvec3 normal(record.hit.Ng_x, record.hit.Ng_y, record.hit.Ng_z);
-        const glm::dvec3 met = beside.origin + double{t} * beside.direction;
-        const double distance = glm::dot(met - ray.origin, normal) / glm::dot(ray.direction, normal);
-        return static_cast<float>((std::isfinite(distance) ? distance : double{t}) * -eye.direction.z);
+        RTCRayHit record;
+        float t = cast(beside, record);
+        if (t == kNothing) return range.include(kNothing);
+        const auto shown = [&] {
+            const glm::dvec3 normal(record.hit.Ng_x, record.hit.Ng_y, record.hit.Ng_z);
+            const glm::dvec3 met = beside.origin + double{t} * beside.direction;
+            const double distance = glm::dot(met - ray.origin, normal) / glm::dot(ray.direction, normal);
+            return static_cast<float>((std::isfinite(distance) ? distance : double{t}) * -eye.direction.z);
+        };
+        const float front = shown();
+        range.include(front);
+        for (;;) {
+            const float next = cast(beside, record, std::nextafter(t, kNothing));
+            if (next == kNothing || next <= t) return;
+            t = next;
+            // Beyond what hides it, and not past the eye.
+            if (const float depth = shown(); depth > 0 && depth < front) range.include(depth);
+        }
     }
 
     SurfacePoint point(const RTCHit& hit, const glm::vec3& position, const glm::vec3& to_eye) const {
@@ -203,8 +216,8 @@ DepthRange ReferenceScene::range_in_pixel(const ReferenceView& view, std::uint32
     for (const double dy : {-kSnap, 0.0, kSnap})
         for (const double dx : {-kSnap, 0.0, kSnap}) {
             const glm::dvec2 aside(dx, dy);
-            range.include(impl_->depth_moved(view, to_mesh, centre + aside, centre));
-            range.include(impl_->depth_moved(view, to_mesh, centre + aside, centre - aside));
+            impl_->include_moved(view, to_mesh, centre + aside, centre, range);
+            impl_->include_moved(view, to_mesh, centre + aside, centre - aside, range);
         }
     return range;
 }

@@ -179,3 +179,27 @@ TEST_CASE("a wall seen from its edge may show a little nearer or farther, as its
     CHECK(range.nearest == Approx(60 - 100.0 / 512));
     CHECK(range.farthest == Approx(60 + 100.0 / 512));
 }
+
+TEST_CASE("a wall that folds back behind an outline may come to the front beyond it, as corners are moved") {
+    // A plate that faces the eye at depth 60 ends where x = -1/1024 px; from its edge a wall runs back below it, 50
+    // deep where it is half a pixel wide. At the pixel's centre there is neither; moved over it, the wall is the nearer
+    // one.
+    constexpr float kEdge = -1.0f / 1024;
+    IndexedMesh mesh;
+    mesh.positions = {
+        {-3, -3, 0},   {kEdge, -3, 0}, {kEdge, 3, 0}, {-3, 3, 0},  {kEdge - 0.5f, -3, -50}, {kEdge - 0.5f, 3, -50},
+        {-9, -9, -80}, {9, -9, -80},   {9, 9, -80},   {-9, 9, -80}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+    mesh.corner_normals.assign(12, Vec3f::UnitZ());
+    mesh.materials.push_back({});
+    ReferenceView view;
+    view.view = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -60));
+    view.projection = flip_y(glm::orthoRH_ZO(-4.5, 4.5, -4.5, 4.5, 0.1, 200.0));
+    view.width = view.height = 9;
+    const DepthRange range = ReferenceScene(mesh).range_in_pixel(view, 4, 4, 1);
+    CHECK(range.nearest == Approx(60 - 100.0 * (1.0 / 512 + 1.0 / 1024)));
+    // What is hidden stays hidden: it does not excuse a hole through which it shows.
+    mesh.triangles.insert(mesh.triangles.end(), {{6, 7, 8}, {6, 8, 9}});
+    mesh.corner_normals.assign(18, Vec3f::UnitZ());
+    CHECK(ReferenceScene(mesh).range_in_pixel(view, 3, 4, 1).farthest == Approx(60));
+}

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 namespace splice {
@@ -17,7 +18,7 @@ StageDisplay::~StageDisplay() {
 void StageDisplay::update(std::string_view stage, double fraction) {
     if (quiet_) return;
     if (stage != stage_) {
-        finish();
+        end_stage();
         stage_ = stage;
         start_ = std::chrono::steady_clock::now();
     }
@@ -25,10 +26,23 @@ void StageDisplay::update(std::string_view stage, double fraction) {
 }
 
 void StageDisplay::finish() {
+    end_stage();
+    write_ended();
+    ended_.clear();
+}
+
+void StageDisplay::end_stage() {
     if (stage_.empty()) return;
     erase_bar();
-    std::fprintf(stderr, "%-9s %8.2f s\n", stage_.c_str(), elapsed_seconds());
+    write_ended();
+    std::array<char, 32> seconds{};
+    std::snprintf(seconds.data(), seconds.size(), "%8.2f s\n", elapsed_seconds());
+    ended_ = stage_ + std::string(stage_.size() < 9 ? 9 - stage_.size() : 0, ' ') + ' ' + seconds.data();
     stage_.clear();
+}
+
+void StageDisplay::write_ended() const {
+    std::fputs(ended_.c_str(), stderr);
 }
 
 double StageDisplay::elapsed_seconds() const {

@@ -365,9 +365,10 @@ TEST_CASE("splice-bake says in one line what is wrong with an input, and leaves 
     std::ofstream(folder / "cut.off") << "OFF\n8 6 0\n0 0 0\n";
     std::ofstream(folder / "two\nlines.obj") << "v 0 0 0\n";
     std::filesystem::create_directory(folder / "folder.obj");
-    for (const char* input :
-         {"absent.obj", "empty.obj", "noise.ply", "points.obj", "cut.off", "folder.obj", "two\nlines.obj"}) {
-        const Outcome outcome = bake(folder, {input, "-o", "out.splice", "--quiet"});
+    std::ofstream(folder / "line.obj") << "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";  // read well, refused by repair
+    for (const char* input : {"absent.obj", "empty.obj", "noise.ply", "points.obj", "cut.off", "folder.obj",
+                              "two\nlines.obj", "line.obj"}) {
+        const Outcome outcome = bake(folder, {input, "-o", "out.splice"});
         INFO(outcome.err);
         CHECK(outcome.exit_code == 1);
         CHECK(outcome.out.empty());

@@ -67,6 +67,16 @@ void add_quality(CLI::App& command, CommandLine& line, std::size_t directions) {
         ->check(CLI::Range(1e-5, 1.0))
         ->capture_default_str();
     command
+        .add_option("--sagitta", line.quality.bake.sampling.sagitta,
+                    "How far the surface may bend away within a spacing, unit-box units, 1e-7 to 1")
+        ->check(CLI::Range(1e-7, 1.0))
+        ->capture_default_str();
+    command
+        .add_option("--crease-spacing", line.quality.bake.sampling.crease_spacing,
+                    "Surfel spacing at creases and borders, unit-box units, 1e-5 to 1")
+        ->check(CLI::Range(1e-5, 1.0))
+        ->capture_default_str();
+    command
         .add_option("--triangle-share", line.quality.bake.cluster.triangle_share,
                     "Share of the triangles that the bake keeps as triangles, 0..1")
         ->check(CLI::Range(0.0, 1.0));

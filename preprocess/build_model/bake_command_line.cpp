@@ -190,6 +190,19 @@ std::optional<BakeCommand> parse_bake_command(int argc, const char* const* argv)
         ->check(number_between(1e-5, 1))
         ->type_name("LENGTH")
         ->group(surfels);
+    app.add_option("--sagitta", options.sampling.sagitta,
+                   "How far the surface may bend away within a spacing, share of the model's longest side, 1e-7..1: "
+                   "four times as much doubles the spacing on curved surfaces; default 1/" +
+                       printed(std::round(1 / options.sampling.sagitta)))
+        ->check(number_between(1e-7, 1))
+        ->type_name("LENGTH")
+        ->group(surfels);
+    app.add_option("--crease-spacing", options.sampling.crease_spacing,
+                   "Spacing at creases and borders, share of the model's longest side, 1e-5..1; default 1/" +
+                       printed(std::round(1 / options.sampling.crease_spacing)))
+        ->check(number_between(1e-5, 1))
+        ->type_name("LENGTH")
+        ->group(surfels);
     app.add_flag("--no-prune", no_prune,
                  "Keep surfels that others cover (--sampling C; adaptive sampling makes none) and do not shrink disks")
         ->group(surfels);

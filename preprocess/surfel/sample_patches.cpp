@@ -161,6 +161,8 @@ SurfelSet sample_patches(const IndexedMesh& mesh, const PatchSet& patches, const
                          const Progress& progress) {
     if (!(options.h_min > 0) || !(options.h_max >= options.h_min))
         throw UsageError("surfel spacing needs 0 < h-min <= h-max");
+    if (!(options.sagitta > 0) || !(options.crease_spacing > 0))
+        throw UsageError("surfel spacing needs a sagitta and a crease spacing above 0");
     if (options.thesis_c && !(*options.thesis_c > 0)) throw UsageError("the sampling constant C must be above 0");
     const auto start = Clock::now();
     const SmoothNeighbours neighbours = find_smooth_neighbours(mesh);

@@ -13,16 +13,13 @@
 namespace splice {
 namespace {
 
-// The blend of surfels misses a shading gradient g by about 0.07 g s at spacing s. With n surfels to spend, the squared
-// error summed over the surface is least for s ~ g^(-1/2), that is at a constant sagitta s^2 curvature / 8.
-constexpr float kSagitta = 1.0f / 14000;       // unit-box units
-constexpr float kTurnPerSpacing = 0.5f;        // radians, at most
-constexpr float kColourPerSpacing = 0.12f;     // of the distance from black to one primary, sRGB-encoded, at most
-constexpr float kFinestDetail = 1.0f / 512;    // no curvature or colour asks for less: a pixel of a small picture
-constexpr float kMostTextureSteps = 64;        // along the longest edge of a triangle
-constexpr float kFeatureSpacing = 1.0f / 400;  // disks are cut at edges, but by one line only: corners overhang
-// Where the surface is narrower than such a disk, as slivers at a folded rim are, spacing follows its width: by one
-// line a disk is cut on one side only, and on the other it would stand out.
+constexpr float kTurnPerSpacing = 0.5f;      // radians, at most
+constexpr float kColourPerSpacing = 0.12f;   // of the distance from black to one primary, sRGB-encoded, at most
+constexpr float kFinestDetail = 1.0f / 512;  // no curvature or colour asks for less: a pixel of a small picture
+constexpr float kMostTextureSteps = 64;      // along the longest edge of a triangle
+// Disks are cut at edges, but by one line only, so corners overhang: hence a spacing at creases. Where the surface is
+// narrower than such a disk, as slivers at a folded rim are, spacing follows its width: on its other side the disk
+// would stand out.
 constexpr float kNarrowest = 1.0f / 1000;
 constexpr float kCreaseCosine = 0.94f;  // corner normals that differ by more than 20 degrees across an edge
 constexpr int kMaxGradingSweeps = 24;
@@ -91,8 +88,8 @@ float distance_to_segment(const Vec3f& p, const Vec3f& a, const Vec3f& b) {
 SpacingField::SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SurfaceColour& colour,
                            const SamplingOptions& options)
     : mesh_(mesh),
-      feature_spacing_(
-          std::clamp(kFeatureSpacing, static_cast<float>(options.h_min), static_cast<float>(options.h_max))) {
+      feature_spacing_(std::clamp(static_cast<float>(options.crease_spacing), static_cast<float>(options.h_min),
+                                  static_cast<float>(options.h_max))) {
     measure_detail(colour, options);
     grade(vertex_spacing_);
     find_features();
@@ -130,13 +127,16 @@ void SpacingField::measure_detail(const SurfaceColour& colour, const SamplingOpt
         }
     }
     const auto h_min = static_cast<float>(options.h_min), h_max = static_cast<float>(options.h_max);
+    // The blend of surfels misses a shading gradient g by about 0.07 g s at spacing s. With n surfels to spend, the
+    // squared error summed over the surface is least for s ~ g^(-1/2), that is at a constant sagitta s^2 curvature / 8.
+    const auto sagitta = static_cast<float>(options.sagitta);
     vertex_spacing_.resize(vertex_count);
     for (std::size_t i = 0; i < vertex_count; ++i) {
         float spacing = h_max;
         if (area[i] > 0) {
             const float curvature = std::sqrt(turn[i] / area[i]), gradient = std::sqrt(change[i] / area[i]);
             if (curvature > 0) {
-                spacing = std::min({spacing, kTurnPerSpacing / curvature, std::sqrt(8 * kSagitta / curvature)});
+                spacing = std::min({spacing, kTurnPerSpacing / curvature, std::sqrt(8 * sagitta / curvature)});
             }
             if (gradient > 0) spacing = std::min(spacing, kColourPerSpacing / gradient);
             spacing = std::max(spacing, kFinestDetail);

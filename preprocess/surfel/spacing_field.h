@@ -17,7 +17,7 @@ namespace splice {
 /// triangle.
 class SpacingField {
   public:
-    /// The adaptive field; reads options.h_min and options.h_max.
+    /// The adaptive field; reads the lengths of the options.
     SpacingField(const IndexedMesh& mesh, const SmoothNeighbours& neighbours, const SurfaceColour& colour,
                  const SamplingOptions& options);
 

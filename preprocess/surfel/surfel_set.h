@@ -41,11 +41,14 @@ struct SamplingOptions {
                                      // unset: spacing adapts to curvature and colour detail, see spacing_field.h
     double h_min = 1.0 / 4096;       // spacing limits, unit-box units; adaptive spacing goes down to 1/512 by itself
     double h_max = 1.0 / 48;
+    double sagitta = 1.0 / 14000;       // how far the surface may bend away within a spacing, unit-box units
+    double crease_spacing = 1.0 / 400;  // spacing at creases and borders, within the limits, unit-box units
     bool prune = true;  // false: every candidate is kept where it was found, at the radius it has before shrinking
 };
 
 /// Hole-free by construction: each point of each surfel patch lies under a disk of its own patch. Deterministic for any
-/// thread count. Throws UsageError unless 0 < h_min <= h_max and thesis_c > 0.
+/// thread count. Throws UsageError unless 0 < h_min <= h_max and thesis_c,
+/// sagitta and crease_spacing > 0.
 ///
 /// Why no point is bare. Each triangle is tiled by convex cells. Each cell is given to one site whose disk may cover it
 /// (normals within 60 degrees of each other), a new site at the cell's own centre if there is none. A disk's radius is

@@ -175,6 +175,18 @@ TEST_CASE("spacing follows curvature, colour and features within its limits", "[
         CHECK(most == Approx(options.h_max));
         CHECK(least < most / 1.5f);
     }
+    SECTION("a larger sagitta doubles it on curved surfaces, a larger crease spacing at borders") {
+        options.sagitta *= 0.25;
+        CHECK(2 * mean_spacing(sphere) == Approx(smooth).epsilon(0.02));
+        const IndexedMesh sheet = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+        const auto at_corner = [&] {
+            return SpacingField(sheet, find_smooth_neighbours(sheet), SurfaceColour(sheet), options)
+                .at(0, sheet.positions[sheet.triangles[0][0]]);
+        };
+        CHECK(at_corner() == Approx(1.0 / 400));
+        options.crease_spacing = 1.0 / 100;
+        CHECK(at_corner() == Approx(1.0 / 100));
+    }
     SECTION("it is as wide as a ribbon, down to a limit") {
         for (const float width : {1.0f / 700, 1.0f / 900, 1.0f / 50000}) {
             const IndexedMesh ribbon =

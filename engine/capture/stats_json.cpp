@@ -27,6 +27,7 @@ nlohmann::ordered_json json_of(const CutStats& cut) {
     json["merged_surfels"] = cut.counts.merged_surfels;
     json["surfels"] = cut.counts.surfels;
     json["patches_by_triangles"] = cut.counts.patches_by_triangles;
+    json["groups_by_triangles"] = cut.counts.groups_by_triangles;
     json["select_ms"] = cut.select_ms;
     json["gather_ms"] = cut.gather_ms;
     return json;

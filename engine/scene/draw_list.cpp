@@ -1,6 +1,7 @@
 #include "engine/scene/draw_list.h"
 
 #include "engine/scene/gpu_model.h"
+#include "engine/scene/patch_groups.h"
 #include "engine/scene/patch_view.h"
 
 #include <tbb/parallel_for.h>
@@ -25,6 +26,8 @@ class Culler {
 
     void visit_all() {
         const auto& octree = draws_.model->octree();
+        if (groups()) choose_groups();
+        if (!groups_.chosen.empty() && groups_.chosen.front()) return;
         if (cuts()) cut();
         if (octree.empty()) {
             visit_patches(0, static_cast<std::uint32_t>(draws_.model->patches().size()));
@@ -36,6 +39,24 @@ class Culler {
   private:
     using Extent = PatchView::Extent;
 
+    // Whether triangles of several patches together may take the place of both triangles and surfels.
+    bool groups() const {
+        return options_.tau > 0 && options_.draw_triangles && options_.merge_patches &&
+               (options_.draw_surfels || options_.surfels_as_triangles);
+    }
+
+    void choose_groups() {
+        groups_ = choose_patch_groups(*draws_.model, seen_,
+                                      {.tau = options_.tau,
+                                       .costs = options_.costs,
+                                       .two_sided = draws_.two_sided,
+                                       .triangles_only = options_.surfels_as_triangles});
+        for (const PatchGroup& group : groups_.groups)
+            append(draws_.triangles,
+                   {group.level.first_index, group.level.index_count, group.material, group.first_patch}, true);
+        draws_.load += groups_.load;
+    }
+
     // Whether surfels come from the point tree; if not, from the patches.
     bool cuts() const {
         return (options_.tau > 0 || draws_.model->pager() != nullptr) && options_.draw_surfels &&
@@ -46,6 +67,7 @@ class Culler {
         const std::vector<double> costs = triangle_costs();
         draws_.cut = cut_points(draws_.model->hierarchy(), cut_view(costs));
         draws_.load.splats = static_cast<double>(draws_.cut.statistics.ellipses + draws_.cut.statistics.surfels);
+        draws_.cut.statistics.groups_by_triangles = groups_.groups.size();
         by_triangles_.assign(draws_.model->patches().size(), false);
         for (const std::uint32_t patch : draws_.cut.triangle_patches)
             by_triangles_[patch] = true;
@@ -88,7 +110,8 @@ class Culler {
                 .two_sided = draws_.two_sided,
                 .tau = options_.tau,
                 .max_point_size = options_.force_quads ? 0 : options_.max_point_size,
-                .triangle_costs = costs};
+                .triangle_costs = costs,
+                .left_out = groups_.surfels};
     }
 
     // The coarsest triangles whose error is within tau.
@@ -100,11 +123,12 @@ class Culler {
     void visit_node(std::uint32_t index) {
         const auto& octree = draws_.model->octree();
         const format::OctreeNode& node = octree[index];
+        if (!groups_.chosen.empty() && groups_.chosen[index]) return;
         const Extent extent = seen_.locate(node.bounds_min, node.bounds_max);
         if (extent.containment == Containment::kOutside) return;
         std::uint32_t next = node.first_patch;
         const std::uint32_t end = node.first_patch + node.patch_count;
-        if (extent.containment == Containment::kPartly) {
+        if (extent.containment == Containment::kPartly || !groups_.groups.empty()) {
             for (std::uint32_t child = 0; child < node.child_count; ++child) {
                 const format::OctreeNode& below = octree[node.first_child + child];
                 visit_patches(next, below.first_patch);
@@ -175,6 +199,7 @@ class Culler {
     const DrawListOptions& options_;
     InstanceDraws& draws_;
     PatchView seen_;
+    PatchGroups groups_;
     std::vector<bool> by_triangles_;  // surfel patches, where the cut chose
 };
 

@@ -5,6 +5,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/lod_cut.h"
 #include "engine/scene/paging.h"
+#include "engine/scene/patch_groups.h"
 #include "engine/scene/surfel_pager.h"
 #include "engine/scene/surfel_store.h"
 #include "engine/vulkan/buffer.h"
@@ -40,6 +41,8 @@ class GpuModel {
     const std::vector<format::Patch>& patches() const { return patches_; }
     const std::vector<format::Lod>& lods() const { return lods_; }
     const std::vector<format::OctreeNode>& octree() const { return octree_; }
+    /// One a node of the octree.
+    const std::vector<PatchGroupContent>& group_contents() const { return group_contents_; }
     const gpu::Buffer& vertices() const { return vertices_; }
     const gpu::Buffer& indices() const { return indices_; }
     const SurfelStore& surfels() const { return surfels_; }
@@ -79,6 +82,7 @@ class GpuModel {
     std::vector<format::Patch> patches_;
     std::vector<format::Lod> lods_;
     std::vector<format::OctreeNode> octree_;
+    std::vector<PatchGroupContent> group_contents_;
     PointHierarchy hierarchy_;
     std::vector<format::Surfel> ellipses_;
     gpu::Buffer vertices_, indices_;

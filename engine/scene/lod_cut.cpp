@@ -86,6 +86,8 @@ class Rules {
         const auto radius = static_cast<double>(node.radius);
         const double depth = glm::dot(glm::dvec3(depth_), centre) + depth_.w;
         inside = visit.inside;
+        const Left left = left_of(visit.node);
+        if (left == Left::kNone) return Step::kEnd;
         if (!inside && outside(centre, depth, radius, inside)) {
             ++cut.statistics.outside_frustum;
             return Step::kEnd;
@@ -97,6 +99,7 @@ class Rules {
             ++cut.statistics.facing_away;
             return Step::kEnd;
         }
+        if (left == Left::kSome) return Step::kDescend;
         const std::uint32_t surfels = hierarchy_.surfel_counts[visit.node];
         const double nearest = depth - radius;
         if (small_enough(static_cast<double>(node.extent), nearest, distance2)) {
@@ -124,6 +127,18 @@ class Rules {
     const PointHierarchy& hierarchy() const { return hierarchy_; }
 
   private:
+    enum class Left { kAll, kSome, kNone };
+
+    // Of a node's surfels, but for CutView::left_out.
+    Left left_of(std::uint32_t node) const {
+        if (view_.left_out.empty()) return Left::kAll;
+        const std::uint32_t first = hierarchy_.nodes[node].first_surfel, end = first + hierarchy_.surfel_counts[node];
+        const auto next =
+            std::ranges::upper_bound(view_.left_out, first, {}, [](const auto& range) { return range.second; });
+        if (next == view_.left_out.end() || next->first >= end) return Left::kAll;
+        return next->first <= first && next->second >= end ? Left::kNone : Left::kSome;
+    }
+
     bool outside(const glm::dvec3& centre, double depth, double radius, bool& inside) const {
         const double slack = slack_ * (view_.orthographic ? 1 : std::max(depth + radius, 0.0));
         double farthest = near_ - depth;
@@ -256,6 +271,7 @@ CutStatistics& CutStatistics::operator+=(const CutStatistics& other) {
     merged_surfels += other.merged_surfels;
     surfels += other.surfels;
     patches_by_triangles += other.patches_by_triangles;
+    groups_by_triangles += other.groups_by_triangles;
     return *this;
 }
 

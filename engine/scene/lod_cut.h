@@ -71,6 +71,8 @@ struct CutView {
     // By how much drawing a patch's triangles costs more than drawing no surfel of it, in splats; empty: no patch is
     // drawn by its triangles.
     std::span<const double> triangle_costs;
+    // Surfels that something else is drawn for: begin, end, ascending; each all those of a node.
+    std::span<const std::pair<std::uint32_t, std::uint32_t>> left_out;
 };
 
 /// Consecutive surfels, or nodes, of the model.
@@ -89,6 +91,7 @@ struct CutStatistics {
     std::uint64_t merged_surfels = 0;                    // those below them
     std::uint64_t surfels = 0;                           // drawn themselves
     std::uint64_t patches_by_triangles = 0;              // surfel patches whose triangles cost less
+    std::uint64_t groups_by_triangles = 0;               // nodes of the octree drawn as a whole by triangles
     CutStatistics& operator+=(const CutStatistics& other);
     friend bool operator==(const CutStatistics&, const CutStatistics&) = default;
 };

@@ -1,4 +1,4 @@
-// A model's patches as a camera sees them: whether they are in the picture, how near, how large,
+// A model's patches, and groups of them, as a camera sees them: whether they are in the picture, how near, how large,
 // which level of triangles will do.
 #pragma once
 
@@ -53,7 +53,7 @@ class PatchView {
     /// mean silhouette of a box is a quarter of its surface.
     double pixels_of(double area, const float (&low)[3], const float (&high)[3], double nearest) const;
 
-    /// `pixels`: of the patch that the level is of.
+    /// `pixels`: of the patch or group that the level is of.
     static DrawLoad load_of_triangles(const format::Lod& level, double pixels, bool two_sided);
 
   private:

@@ -1,16 +1,11 @@
 #include "preprocess/build_model/assemble_model.h"
 
-#include "preprocess/build_model/normal_cone.h"
-#include "preprocess/build_model/patch_octree.h"
 #include "preprocess/build_model/texture_mips.h"
 #include "preprocess/lod/point_octree.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/surfel_extent.h"
 
-#include <tbb/parallel_for.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -20,21 +15,20 @@ namespace {
 
 constexpr std::uint32_t kUnset = 0xffffffffu;
 
-// What of a patch is computed from its triangles and disks.
-struct PatchExtent {
-    Box bounds;
-    NormalCone cone;
-};
-
 class Assembler {
   public:
     Assembler(const IndexedMesh& mesh, const PatchSet& patches, const RenderVertices& vertices, const PatchLods& lods,
-              const SurfelSet& surfels)
-        : mesh_(mesh), patches_(patches), vertices_(vertices), lods_(lods), surfels_(surfels) {}
+              const SurfelSet& surfels, const PatchLayout& layout, const RegionLods& regions)
+        : mesh_(mesh),
+          patches_(patches),
+          vertices_(vertices),
+          lods_(lods),
+          surfels_(surfels),
+          layout_(layout),
+          regions_(regions) {}
 
     Model assemble() {
-        measure_patches();
-        order_patches();
+        model_.octree = layout_.octree;
         add_triangles();
         add_patches();
         add_surfels();
@@ -62,9 +56,6 @@ class Assembler {
             .subspan(surfels_.patch_begin[patch], surfels_.patch_begin[patch + 1] - surfels_.patch_begin[patch]);
     }
 
-    void measure_patches();
-    PatchExtent measure_patch(std::uint32_t patch) const;
-    void order_patches();
     void add_triangles();
     void add_patches();
     void add_surfels();
@@ -77,21 +68,12 @@ class Assembler {
     const RenderVertices& vertices_;
     const PatchLods& lods_;
     const SurfelSet& surfels_;
+    const PatchLayout& layout_;
+    const RegionLods& regions_;
 
-    std::vector<PatchExtent> extents_;             // by old patch
-    std::vector<std::uint32_t> order_;             // new place -> old patch
     std::vector<std::uint32_t> leaf_of_triangle_;  // IndexedMesh triangle -> triangle of kIndices
     Model model_;
 };
-
-Vec3f position_of(const format::Vertex& vertex) {
-    return {vertex.position[0], vertex.position[1], vertex.position[2]};
-}
-
-Vec3f decoded_normal(std::uint32_t bits) {
-    const auto normal = decode_octahedral(bits);
-    return {normal[0], normal[1], normal[2]};
-}
 
 float stored_length(float length) {
     return float_from_half(half_at_least(length));
@@ -105,69 +87,18 @@ SurfelExtent stored_extent(const SurfelSample& surfel) {
     return decode_extent(extent_of(surfel), stored_length(surfel.radius));
 }
 
-// The extent of a disk along an axis is r sqrt(1 - n^2); widened by its rounding.
-void add_disk(Box& box, const SurfelSample& surfel) {
-    const Vec3f squares = surfel.normal.cwiseProduct(surfel.normal);
-    const Vec3f reach =
-        (Vec3f::Ones() - squares).cwiseMax(0.0f).cwiseSqrt() * stored_length(surfel.radius) + Vec3f::Constant(1e-6f);
-    box.add(surfel.position - reach);
-    box.add(surfel.position + reach);
-}
-
-// The cone must hold what decides whether something is seen from behind: the shading normals, and the geometric normals
-// of every level, by which triangles are culled.
-PatchExtent Assembler::measure_patch(std::uint32_t patch) const {
-    PatchExtent extent;
-    std::vector<Vec3f> normals;
-    for (const PatchLods::Level& level : levels_of(patch)) {
-        const auto indices = indices_of(level);
-        for (std::size_t i = 0; i < indices.size(); i += 3) {
-            const format::Vertex* corners[3];
-            for (std::size_t k = 0; k < 3; ++k) {
-                corners[k] = &vertices_.vertices[indices[i + k]];
-                extent.bounds.add(position_of(*corners[k]));
-                normals.push_back(decoded_normal(corners[k]->normal));
-            }
-            const Vec3d edge_a = (position_of(*corners[1]) - position_of(*corners[0])).cast<double>();
-            const Vec3d edge_b = (position_of(*corners[2]) - position_of(*corners[0])).cast<double>();
-            const Vec3d face_normal = edge_a.cross(edge_b);
-            if (face_normal.squaredNorm() > 0) normals.push_back(face_normal.normalized().cast<float>());
-        }
-    }
-    for (const SurfelSample& surfel : surfels_of(patch)) {
-        add_disk(extent.bounds, surfel);
-        normals.push_back(decoded_normal(encode_octahedral(surfel.normal.x(), surfel.normal.y(), surfel.normal.z())));
-    }
-    extent.cone = enclose_normals(normals);
-    return extent;
-}
-
-void Assembler::measure_patches() {
-    extents_.resize(patches_.patches.size());
-    tbb::parallel_for(std::size_t{0}, extents_.size(),
-                      [&](std::size_t patch) { extents_[patch] = measure_patch(static_cast<std::uint32_t>(patch)); });
-}
-
-void Assembler::order_patches() {
-    std::vector<Box> bounds;
-    bounds.reserve(extents_.size());
-    for (const PatchExtent& extent : extents_)
-        bounds.push_back(extent.bounds);
-    PatchOctree octree = build_patch_octree(bounds);
-    order_ = std::move(octree.order);
-    model_.octree = std::move(octree.nodes);
-}
-
 // Vertices are renumbered by first use, so that a patch's lie together.
 void Assembler::add_triangles() {
-    std::vector<std::uint32_t> new_vertex(vertices_.vertices.size(), kUnset);
-    model_.vertices.reserve(vertices_.vertices.size());
-    model_.indices.reserve(lods_.indices.size());
-    const auto append = [&](const PatchLods::Level& level) {
-        for (const std::uint32_t old_vertex : indices_of(level)) {
+    const std::size_t shared = vertices_.vertices.size();
+    std::vector<std::uint32_t> new_vertex(shared + regions_.vertices.size(), kUnset);
+    model_.vertices.reserve(new_vertex.size());
+    model_.indices.reserve(lods_.indices.size() + regions_.indices.size());
+    const auto append = [&](std::span<const std::uint32_t> indices) {
+        for (const std::uint32_t old_vertex : indices) {
             if (new_vertex[old_vertex] == kUnset) {
                 new_vertex[old_vertex] = static_cast<std::uint32_t>(model_.vertices.size());
-                model_.vertices.push_back(vertices_.vertices[old_vertex]);
+                model_.vertices.push_back(old_vertex < shared ? vertices_.vertices[old_vertex]
+                                                              : regions_.vertices[old_vertex - shared]);
             }
             model_.indices.push_back(new_vertex[old_vertex]);
         }
@@ -177,21 +108,31 @@ void Assembler::add_triangles() {
     std::uint32_t lod = 0;
     leaf_of_triangle_.resize(mesh_.triangles.size());
     std::uint32_t leaf = 0;
-    for (const std::uint32_t patch : order_) {
+    for (const std::uint32_t patch : layout_.order) {
         const auto levels = levels_of(patch);
         first_lod.push_back(lod);
         model_.lods[lod] = {model_.indices.size(), levels[0].index_count, 0.0f};
         lod += static_cast<std::uint32_t>(levels.size());
-        append(levels[0]);
+        append(indices_of(levels[0]));
         for (const std::uint32_t triangle : triangles_of(patch))
             leaf_of_triangle_[triangle] = leaf++;
     }
-    for (std::size_t place = 0; place < order_.size(); ++place) {
-        const auto levels = levels_of(order_[place]);
+    for (std::size_t place = 0; place < layout_.order.size(); ++place) {
+        const auto levels = levels_of(layout_.order[place]);
         for (std::size_t level = 1; level < levels.size(); ++level) {
             model_.lods[first_lod[place] + level] = {model_.indices.size(), levels[level].index_count,
                                                      levels[level].error};
-            append(levels[level]);
+            append(indices_of(levels[level]));
+        }
+    }
+    for (std::size_t node = 0; node + 1 < regions_.level_begin.size(); ++node) {
+        const std::uint32_t first = regions_.level_begin[node], end = regions_.level_begin[node + 1];
+        if (first == end) continue;
+        model_.octree[node].first_lod = static_cast<std::uint32_t>(model_.lods.size());
+        model_.octree[node].lod_count = end - first;
+        for (const PatchLods::Level& level : std::span(regions_.levels).subspan(first, end - first)) {
+            model_.lods.push_back({model_.indices.size(), level.index_count, level.error});
+            append(std::span(regions_.indices).subspan(level.first_index, level.index_count));
         }
     }
 }
@@ -199,9 +140,9 @@ void Assembler::add_triangles() {
 void Assembler::add_patches() {
     std::uint64_t first_surfel = 0;
     std::uint32_t first_lod = 0;
-    for (const std::uint32_t old : order_) {
+    for (const std::uint32_t old : layout_.order) {
         const ClusterPatch& cluster = patches_.patches[old];
-        const PatchExtent& extent = extents_[old];
+        const PatchExtent& extent = layout_.extents[old];
         format::Patch patch{};
         for (int axis = 0; axis < 3; ++axis) {
             patch.bounds_min[axis] = extent.bounds.min[axis];
@@ -231,8 +172,8 @@ void Assembler::add_patches() {
 
 void Assembler::add_surfels() {
     model_.surfels.reserve(surfels_.surfels.size());
-    for (std::uint32_t place = 0; place < order_.size(); ++place) {
-        for (const SurfelSample& sample : surfels_of(order_[place])) {
+    for (std::uint32_t place = 0; place < layout_.order.size(); ++place) {
+        for (const SurfelSample& sample : surfels_of(layout_.order[place])) {
             const Vec3f& position = sample.position;
             const auto& bend = sample.shading_bend;
             model_.surfels.push_back(
@@ -309,8 +250,9 @@ void Assembler::add_info() {
 }  // namespace
 
 Model assemble_model(const IndexedMesh& mesh, const PatchSet& patches, const RenderVertices& vertices,
-                     const PatchLods& lods, const SurfelSet& surfels) {
-    return Assembler(mesh, patches, vertices, lods, surfels).assemble();
+                     const PatchLods& lods, const SurfelSet& surfels, const PatchLayout& layout,
+                     const RegionLods& regions) {
+    return Assembler(mesh, patches, vertices, lods, surfels, layout, regions).assemble();
 }
 
 }  // namespace splice

@@ -64,8 +64,16 @@ Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats
     stats.seconds_sample = surfels.stats.seconds_sample;
     stats.seconds_prune = surfels.stats.seconds_prune;
 
+    const PatchLayout layout =
+        timed(progress, "order", stats.seconds_assemble, [&] { return lay_out_patches(vertices, lods, surfels); });
+    RegionLods regions;
+    if (options.simplify.levels > 1) {
+        regions = timed(progress, "levels", stats.seconds_simplify, [&] {
+            return simplify_regions(mesh, vertices, patches, layout.order, layout.octree, progress);
+        });
+    }
     Model model = timed(progress, "assemble", stats.seconds_assemble,
-                        [&] { return assemble_model(mesh, patches, vertices, lods, surfels); });
+                        [&] { return assemble_model(mesh, patches, vertices, lods, surfels, layout, regions); });
     stats.seconds_total += total.seconds();
     return model;
 }

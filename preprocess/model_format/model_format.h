@@ -14,8 +14,8 @@
 namespace splice::format {
 
 inline constexpr char kMagic[8] = {'S', 'P', 'L', 'I', 'C', 'E', '\r', '\n'};
-inline constexpr std::uint32_t kVersion = 4;
-inline constexpr std::uint32_t kCompressedVersion = 5;  // compressed_model.h
+inline constexpr std::uint32_t kVersion = 6;
+inline constexpr std::uint32_t kCompressedVersion = 7;  // compressed_model.h
 inline constexpr std::uint64_t kSectionAlignment = 64;
 
 struct FileHeader {
@@ -35,7 +35,7 @@ enum class SectionKind : std::uint32_t {
     kIndices = 3,     // uint32; the finest level of all patches comes first, patch by patch
     kSurfels = 4,     // Surfel; a patch's are contiguous, in the order of the point tree; none in a point cloud
     kPatches = 5,     // Patch, in octree order
-    kLods = 6,        // Lod
+    kLods = 6,        // Lod; those of the patches come first, then those of the octree's nodes
     kOctree = 7,      // OctreeNode; node 0 is the root, children of a node are contiguous
     kMergeTree = 8,   // MergeNode
     kMaterials = 9,   // Material; at least one
@@ -129,7 +129,7 @@ static_assert(sizeof(Patch) == 96);
 struct Lod {
     std::uint64_t first_index;  // into kIndices
     std::uint32_t index_count;  // a multiple of 3
-    float error;                // RMS quadric distance to the finest level, unit-box units; 0 for the finest
+    float error;                // RMS quadric distance to the finest level, unit-box units; 0 for a patch's finest
 };
 static_assert(sizeof(Lod) == 16);
 
@@ -140,9 +140,10 @@ struct OctreeNode {
     std::uint32_t patch_count;
     std::uint32_t first_child;  // 0 for a leaf
     std::uint32_t child_count;
-    std::uint64_t reserved;
+    std::uint32_t first_lod;  // levels of all its patches together, 0 if there are none
+    std::uint32_t lod_count;  // 0 where its patches are of several materials
 };
-static_assert(sizeof(OctreeNode) == 48);
+static_assert(sizeof(OctreeNode) == 48 && offsetof(OctreeNode, first_lod) == 40);
 
 /// Inner node i of the merge tree has id source_triangles + i; ids below are leaves, leaf t being triangle t of
 /// kIndices. Children come before parents.

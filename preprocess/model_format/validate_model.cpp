@@ -159,6 +159,7 @@ class Validator {
                     " levels in a patch, at most ", view_.info->lod_levels, " expected");
             const auto lods = view_.lods.subspan(lod, patch.lod_count);
             check_lods(lods);
+            require(lods.front().error == 0, lods.front().error, "finest level has an error of ", lods.front().error);
             require(lods.front().first_index == index, lods.front(), "finest level starts at index ",
                     lods.front().first_index, ", expected ", index);
             surfel += patch.surfel_count;
@@ -168,7 +169,19 @@ class Validator {
         }
         const ModelInfo& info = *view_.info;
         require(surfel == view_.surfel_count(), info, view_.surfel_count(), " surfels, the patches have ", surfel);
-        require(lod == view_.lods.size(), info, view_.lods.size(), " levels, the patches have ", lod);
+        for (const OctreeNode& node : view_.octree) {
+            if (node.lod_count == 0) {
+                require(node.first_lod == 0, node.first_lod, "octree node without levels names one");
+                continue;
+            }
+            require(node.first_lod == lod, node.first_lod, "octree node's levels start at ", node.first_lod,
+                    ", expected ", lod);
+            require(node.lod_count <= view_.lods.size() - lod, node.lod_count, node.lod_count,
+                    " levels in an octree node, ", view_.lods.size() - lod, " are left");
+            check_lods(view_.lods.subspan(lod, node.lod_count));
+            lod += node.lod_count;
+        }
+        require(lod == view_.lods.size(), info, view_.lods.size(), " levels, the patches and octree nodes have ", lod);
         require(index == info.source_triangles * 3, info.source_triangles, info.source_triangles,
                 " source triangles, the finest levels have ", index / 3);
         require(drawn == info.drawn_triangles, info.drawn_triangles, info.drawn_triangles,
@@ -201,7 +214,6 @@ class Validator {
     }
 
     void check_lods(std::span<const Lod> lods) const {
-        require(lods.front().error == 0, lods.front().error, "finest level has an error of ", lods.front().error);
         for (const Lod& lod : lods) {
             require(lod.index_count % 3 == 0, lod.index_count, lod.index_count, " indices are no whole triangles");
             require(
@@ -243,6 +255,15 @@ class Validator {
         }
     }
 
+    // A range of patches is inside the root's because each node's was checked against its parent's.
+    void check_region(const OctreeNode& node) const {
+        if (node.lod_count == 0) return;
+        const auto patches = view_.patches.subspan(node.first_patch, node.patch_count);
+        for (const Patch& patch : patches)
+            require(patch.material == patches.front().material, node.lod_count,
+                    "levels in an octree node whose patches are of several materials");
+    }
+
     // Breadth-first order with contiguous children: each node's children start where the last node's ended, so there
     // can be neither cycles nor nodes that are reached twice or never.
     void check_octree() const {
@@ -252,9 +273,11 @@ class Validator {
                 "octree root does not hold all patches");
         std::uint64_t next = 1;
         for (const OctreeNode& node : view_.octree) {
+            require(static_cast<std::uint64_t>(&node - view_.octree.data()) < next, node, view_.octree.size(),
+                    " octree nodes, ", next, " are reached from the root");
             require(is_box(node), node, "octree bounds are not a box");
-            require(node.reserved == 0, node.reserved, "reserved bytes are not 0");
             require(node.patch_count > 0, node.patch_count, "octree node without patches");
+            check_region(node);
             if (node.child_count == 0) {
                 check_leaf(node);
                 continue;

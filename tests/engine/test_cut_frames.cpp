@@ -216,6 +216,7 @@ TEST_CASE("cuts leave no hole, from near and far") {
     CaptureSettings settings = small_picture();
     const std::vector<glm::dvec3> all = directions();
     std::size_t bare = 0, covered = 0;
+    std::uint64_t groups = 0;
     for (std::size_t i = 0; i < all.size(); i += 5)
         for (const double distance : {1.2, 2.0, 4.0, 9.0, 25.0, 100.0}) {
             settings.camera = camera_at(scene.bounds(), all[i], distance);
@@ -223,12 +224,15 @@ TEST_CASE("cuts leave no hole, from near and far") {
             const Frame full = renderer.render(scene, settings);
             for (const double tau : {1.0, 4.0}) {
                 settings.tau = tau;
-                bare += holes(full, renderer.render(scene, settings));
+                const Frame cut = renderer.render(scene, settings);
+                bare += holes(full, cut);
+                groups += cut.stats.cut.counts.groups_by_triangles;
             }
             covered += full.stats.covered_pixels;
         }
     CHECK(covered > 100'000);
     CHECK(bare == 0);
+    CHECK((groups > 0) == !model.indices.empty());
 }
 
 TEST_CASE("triangles of patches that face away are not drawn, and nothing is missing") {

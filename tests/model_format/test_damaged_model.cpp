@@ -100,7 +100,7 @@ TEST_CASE("every flipped bit is noticed") {
 TEST_CASE("a forged checksum does not get a bent header through") {
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.magic[6] = '\n'; }), Contains("byte 0: not a model file"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.version = kVersion - 1; }),
-               Contains("byte 8: format version 3") && Contains("bake the model again"));
+               Contains("byte 8: format version 5") && Contains("bake the model again"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.section_count = 0xffffffffu; }), Contains("byte 12"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.section_count = 0; }), Contains("byte 12"));
     CHECK_THAT(refusal_of_header([](FileHeader& h) { h.file_bytes = ~0ull; }), Contains("byte 16"));
@@ -213,7 +213,27 @@ TEST_CASE("octrees with cycles, gaps or lies are refused") {
                Contains("without patches"));
     CHECK_THAT(node(2, [](OctreeNode& n) { n.patch_count = 0xffffffffu; }), Contains("divide"));
     CHECK_THAT(node(2, [](OctreeNode& n) { n.bounds_min[0] = 0.75f; }), Contains("bound"));
-    CHECK_THAT(node(2, [](OctreeNode& n) { n.reserved = 1; }), Contains("reserved"));
+    CHECK_THAT(node(2, [](OctreeNode& n) { n.first_lod = 1; }), Contains("without levels names one"));
+    CHECK_THAT(node(2, [](OctreeNode& n) { n.lod_count = 1; }), Contains("levels start at 0, expected 3"));
+    const auto with_level = [&](auto change) {
+        return refusal_after([=](Model& m) {
+            m.lods.push_back({0, 6, 0.25f});
+            m.octree[2].first_lod = 3;
+            m.octree[2].lod_count = 1;
+            change(m);
+        });
+    };
+    CHECK_THAT(with_level([](Model& m) { m.octree[2].lod_count = 2; }),
+               Contains("2 levels in an octree node, 1 are left"));
+    CHECK_THAT(with_level([](Model& m) { m.lods.back().index_count = 7; }), Contains("no whole triangles"));
+    CHECK_THAT(with_level([](Model& m) { m.lods.back().first_index = 1u << 30; }), Contains("leaves the"));
+    CHECK_THAT(with_level([](Model& m) {
+                   std::swap(m.octree[0].lod_count, m.octree[2].lod_count);
+                   std::swap(m.octree[0].first_lod, m.octree[2].first_lod);
+                   m.materials.push_back(m.materials.front());
+                   m.patches[1].material = m.patches[0].material == 0 ? 1 : 0;
+               }),
+               Contains("several materials"));
     CHECK_THAT(refusal_after([](Model& m) { m.octree.push_back(m.octree[2]); }), Contains("reached"));
     CHECK_THAT(refusal_after([](Model& m) { m.octree.clear(); }), Contains("root"));
 }

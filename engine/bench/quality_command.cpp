@@ -84,12 +84,12 @@ Lighting sphere_lighting() {
     return lighting;
 }
 
-Subject sphere_subject(Renderer& renderer, const Picked& what, double depth) {
+Subject sphere_subject(Renderer& renderer, const Picked& what, double depth, double distance) {
     Subject subject;
     subject.name = what.name;
     subject.scene = scene_of(renderer.load(view_of(bumpy_sphere(what.disks, depth))));
     subject.scene.lighting = sphere_lighting();
-    subject.camera.eye = {0, 0, 2.5};
+    subject.camera.eye = {0, 0, distance};
     subject.camera.fov_y_degrees = 60;
     RepairReport report;
     subject.mesh = in_source_units(repair_mesh(shapes::bumpy_sphere(kSphereTriangles), {}, report, kSphere));
@@ -138,12 +138,14 @@ struct Measured {
     const Frame& frame;
     Agreement found;
     std::uint64_t holes;
+    double merge_px;
 };
 
 std::string stem_of(const Measured& measured) {
     const std::uint32_t antialias = measured.frame.stats.antialias;
     const std::string shading = measured.frame.stats.shading == Shading::kDeferred ? "-deferred" : "";
-    return measured.subject.name + shading + (antialias > 1 ? fmt::format("-antialias-{}", antialias) : "");
+    return measured.subject.name + shading + (antialias > 1 ? fmt::format("-antialias-{}", antialias) : "") +
+           (measured.merge_px != kMergePixels ? fmt::format("-merge-{}", measured.merge_px) : "");
 }
 
 std::vector<std::string> row_of(const Measured& measured) {
@@ -151,6 +153,7 @@ std::vector<std::string> row_of(const Measured& measured) {
     return {measured.subject.name,
             std::string(name_of(stats.shading)),
             std::to_string(stats.antialias * stats.antialias),
+            fmt::format("{}", measured.merge_px),
             fmt::format("{:.2f}", measured.found.inside_db),
             fmt::format("{:.2f}", measured.found.frame_db),
             fmt::format("{:.5f}", measured.found.iou),
@@ -164,6 +167,7 @@ nlohmann::json json_of(const Measured& measured) {
     return {{"name", measured.subject.name},
             {"shading", name_of(stats.shading)},
             {"antialias", stats.antialias},
+            {"merge_px", measured.merge_px},
             {"inside_db", number_or_null(measured.found.inside_db)},
             {"frame_db", number_or_null(measured.found.frame_db)},
             {"iou", measured.found.iou},
@@ -181,13 +185,20 @@ CaptureSettings settings_of(const QualityCommand& command) {
     return settings;
 }
 
-std::vector<std::pair<Shading, std::uint32_t>> modes_of(const QualityCommand& command) {
-    std::vector<std::pair<Shading, std::uint32_t>> modes;
+struct Mode {
+    Shading shading;
+    std::uint32_t antialias;
+    double merge_px;
+};
+
+std::vector<Mode> modes_of(const QualityCommand& command) {
+    std::vector<Mode> modes;
     for (const std::string& name : command.shading) {
         const auto shading = find_named(kShadingNames, name);
         if (!shading) throw UsageError("--shading: expected one of " + listed(kShadingNames) + ", got " + name);
         for (const std::uint32_t antialias : command.antialias)
-            modes.emplace_back(*shading, antialias);
+            for (const double merge_px : command.merge)
+                modes.push_back({*shading, antialias, merge_px});
     }
     return modes;
 }
@@ -211,6 +222,13 @@ CLI::App& add_quality_command(CLI::App& program, QualityCommand& command) {
     app.add_option("--depth", command.depth, "How many of the bumpy sphere's disks lie over a point, 0.1 to 1000")
         ->check(CLI::Range(0.1, 1000.0))
         ->capture_default_str();
+    app.add_option("--distance", command.distance, "Of the eye from the bumpy sphere's centre, 1.2 to 1000")
+        ->check(CLI::Range(1.2, 1000.0))
+        ->capture_default_str();
+    app.add_option("--merge", command.merge, "As splice-capture's, 0 to 64 pixels; a list: each in turn")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, kMostMergePixels))
+        ->capture_default_str();
     app.add_option("--size", command.size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
     app.add_option("--backend", command.backend, "As splice-capture --backend")->capture_default_str();
     app.add_option("--shading", command.shading, "surfel, deferred; a list: each in turn")
@@ -231,7 +249,7 @@ void run_quality_command(const QualityCommand& command) {
     CaptureSettings settings = settings_of(command);
     const std::vector<Picked> subjects =
         command.subjects.empty() ? thesis_models(command.folder) : picked(command.subjects);
-    const std::vector<std::pair<Shading, std::uint32_t>> modes = modes_of(command);
+    const std::vector<Mode> modes = modes_of(command);
     std::vector<std::filesystem::path> files;
     for (const Picked& subject : subjects)
         if (subject.disks == 0) files.emplace_back(subject.name);
@@ -240,20 +258,22 @@ void run_quality_command(const QualityCommand& command) {
     nlohmann::json report = {{"device", renderer.device_name()},
                              {"size", {settings.width, settings.height}},
                              {"pictures", nlohmann::json::array()}};
-    Table table({"PSNR, dB", "shading", "samples", "inside", "frame", "IoU", "holes", "surfels", "backend"});
+    Table table({"PSNR, dB", "shading", "samples", "merge", "inside", "frame", "IoU", "holes", "surfels", "backend"});
     for (const Picked& what : subjects) {
         show_progress(what.name);
-        const Subject subject = what.disks > 0 ? sphere_subject(renderer, what, command.depth)
+        const Subject subject = what.disks > 0 ? sphere_subject(renderer, what, command.depth, command.distance)
                                                : file_subject(renderer, what, settings.width, settings.height);
         settings.camera = subject.camera;
         const ReferenceScene oracle(subject.mesh);
         const Truth truth = truth_of(oracle, subject.mesh, subject.scene, subject.camera, settings.width,
                                      settings.height, subject.two_sided);
-        for (const auto& [shading, antialias] : modes) {
+        for (const auto& [shading, antialias, merge_px] : modes) {
             settings.shading = shading;
             settings.antialias = antialias;
+            settings.merge_px = merge_px;
             const Frame frame = renderer.render(subject.scene, settings);
-            const Measured measured{subject, frame, compare(frame, truth), count_holes(frame, truth.coverage)};
+            const Measured measured{subject, frame, compare(frame, truth), count_holes(frame, truth.coverage),
+                                    merge_px};
             if (!command.pictures.empty())
                 save_pictures(command.pictures, stem_of(measured), colours(frame), truth.image);
             table.add(row_of(measured));

@@ -17,10 +17,12 @@ namespace splice::bench {
 struct QualityCommand {
     std::vector<std::string> subjects;  // meshes, scenes, "bumpy-sphere" and perhaps a number after it
     std::filesystem::path folder;       // of the thesis's models, when there are no subjects
+    double distance = 2.5;              // of the eye from the bumpy sphere's centre
     double depth = 2.418;               // of the bumpy sphere's disks: how many lie over a point
     std::string device = "auto", size = "512x512", backend = "sprite";
     std::vector<std::string> shading = {"surfel"};
     std::vector<std::uint32_t> antialias = {1};  // samples along each side of a pixel, each in turn
+    std::vector<double> merge = {kMergePixels};  // CaptureSettings::merge_px, each in turn
     std::filesystem::path json, pictures;
 };
 

@@ -15,6 +15,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/draw_list.h"
 #include "engine/scene/kernel.h"
+#include "engine/scene/merged_surfels.h"
 #include "engine/scene/paging.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shading.h"
@@ -58,6 +59,8 @@ struct CaptureSettings {
     bool want_overlap = false;                        // fill FrameStats::overlap_mean
     std::optional<graph::ExportFormat> want_graph;    // fill Frame::graph
     bool draw_triangles = true, draw_surfels = true;  // which patches take part
+    double merge_px = kMergePixels;  // samples by which merged surfels may differ (engine/scene/merged_surfels.h); 0:
+                                     // every surfel is drawn
     double tau = 0;  // pixels that an ellipse may be long that stands for surfels (engine/scene/lod_cut.h); 0: full
                      // detail
     std::optional<double> budget_ms = {};   // tau grows until the costs predict no more (engine/scene/frame_budget.h)
@@ -101,6 +104,7 @@ struct FrameStats {
     std::uint32_t antialias = 1;      // samples along each side of a pixel
     double frame_ms = 0;              // submission to completion of the frame, readback included
     std::vector<PassTime> passes;     // in order of execution
+    MergedCounts merged;              // of those
     std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
     std::uint64_t triangles_drawn = 0;
     DrawLoad load = {};

@@ -99,7 +99,7 @@ std::string view_help() {
 struct RawOptions {
     std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
         show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, budget, memory,
-        kernel, points_below;
+        kernel, points_below, merge;
     bool one_sided = false, two_sided = false;
 };
 
@@ -123,6 +123,7 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     if (!raw.backend.empty()) command.backend = parse_named(kBackendNames, raw.backend, "--backend");
     if (!raw.points_below.empty())
         command.points_below = parse_in_range(raw.points_below, "--points-below", 0, kLargestPoint, " pixels");
+    if (!raw.merge.empty()) command.merge_px = parse_in_range(raw.merge, "--merge", 0, kMostMergePixels, " pixels");
     if (!raw.show.empty()) command.shown = parse_named(kShownNames, raw.show, "--show");
     if (!raw.height.empty())
         command.orthographic_height = parse_in_range(raw.height, "--height", 1e-30, 1e30, " world units");
@@ -258,6 +259,11 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
            "How a splat's weight falls off from its centre; default disk: a Gaussian that ends at its rim. Published: "
            "gaussian:0.3, 0.5, 0.8; confetti:1,1.5,2, 6,1.5,3, 4,1.5,5")
         ->option_text("gaussian:SIGMA|confetti:A,B,N|constant|disk");
+    app.add_option(
+           "--merge", raw.merge,
+           "Surfels of a patch become fewer where that moves none by more than so many pixels, 0 to 64; default "
+           "0.5; 0: every surfel is drawn")
+        ->option_text("PIXELS");
     app.add_option("--tau", raw.tau,
                    "Level of detail: how many pixels an ellipse may be long that stands for many surfels, 0 to 1000; "
                    "default 0, full detail")

@@ -31,6 +31,7 @@ struct CaptureCommand {
     std::optional<double> epsilon_scale;
     std::optional<bool> prefilter;
     std::optional<Shading> shading;
+    std::optional<double> merge_px;   // pixels
     std::optional<double> tau;        // pixels
     std::optional<double> budget_ms;  // of a frame
     bool calibrate = false;

@@ -169,6 +169,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
         .small_px = backend.small_px,
+        .merge_px = view == View::kSamples ? 0 : settings.merge_px,
         .tau = settings.tau * antialias,
         .costs = settings.costs};
     auto [tau, draws] = select(scene, settings, camera, list_options, frame.width, frame.height);
@@ -207,6 +208,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     stats->antialias = antialias;
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;
+    stats->merged = draws.merged;
     stats->triangles_drawn = draws.triangles;
 }
 

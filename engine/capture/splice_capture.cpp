@@ -40,6 +40,7 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     settings.shown = command.shown.value_or(settings.shown);
     settings.backend = command.backend.value_or(Backend::kAuto);
     settings.points_below = command.points_below;
+    settings.merge_px = command.merge_px.value_or(settings.merge_px);
     settings.sides = command.sides.value_or(scene.sides);
     settings.epsilon_scale = command.epsilon_scale.value_or(scene.epsilon_scale);
     settings.prefilter = command.prefilter.value_or(scene.prefilter);

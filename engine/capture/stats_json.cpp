@@ -56,6 +56,7 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
     for (const PassTime& pass : stats.passes)
         json["passes"].push_back(json_of(pass));
     json["surfels_drawn"] = stats.surfels_drawn;
+    if (stats.merged.splats > 0) json["merged"] = {{"splats", stats.merged.splats}, {"surfels", stats.merged.surfels}};
     json["triangles_drawn"] = stats.triangles_drawn;
     json["predicted_ms"] = stats.predicted_ms;
     json["costs_us"] = costs_json(stats.costs);

@@ -164,20 +164,36 @@ class Culler {
         if (patch.surfel_count == 0) return;
         draws_.load.splat_pixels += pixels_of(patch, extent.nearest);
         if (cuts()) return;
-        draws_.load.splats += static_cast<double>(patch.surfel_count);
-        const double largest = largest_splat(patch, extent.nearest);
+        const MergedRange drawn = surfels_of(index, extent.nearest);
+        draws_.load.splats += static_cast<double>(drawn.count);
+        const double largest = largest_splat(patch.max_surfel_radius + drawn.growth, extent.nearest);
         const bool sprite =
             !options_.force_quads && extent.containment == Containment::kInside && largest <= options_.max_point_size;
         auto& ranges = largest <= options_.small_px ? draws_.small : sprite ? draws_.sprites : draws_.quads;
-        append(ranges, {patch.first_surfel, patch.surfel_count, 0, index}, true);
+        append(ranges, {drawn.first, drawn.count, 0, index}, true);
+    }
+
+    // The surfels of a patch, or what may stand for them from here.
+    MergedRange surfels_of(std::uint32_t index, double nearest) {
+        const format::Patch& patch = draws_.model->patches()[index];
+        MergedRange drawn{patch.first_surfel, patch.surfel_count, 0};
+        for (const std::vector<MergedRange>& level : draws_.model->merged_levels()) {
+            const MergedRange& range = level[index];
+            if (range.count == 0) continue;
+            if (!seen_.within(static_cast<double>(range.growth), options_.merge_px, nearest)) break;
+            drawn = range;
+        }
+        if (drawn.first == patch.first_surfel) return drawn;
+        draws_.merged += {drawn.count, patch.surfel_count};
+        return drawn;
     }
 
     // Upper bound of the size in pixels of the point that encloses any splat of a patch inside the frustum: for |a|,
     // |b| <= r, (x + a) / (d + b) - x / d is at most r (1 + |x / d|) / (d - r). `nearest` is a depth of the bounds,
     // which hold the disks.
-    double largest_splat(const format::Patch& patch, double nearest) const {
+    double largest_splat(float largest_radius, double nearest) const {
         if (nearest <= camera_.near_plane) return std::numeric_limits<double>::infinity();
-        const double radius = kSolidReach * patch.max_surfel_radius * draws_.scale;
+        const double radius = kSolidReach * static_cast<double>(largest_radius) * draws_.scale;
         const double stretch = camera_.orthographic ? 1 : (1 + std::max(seen_.half_x(), seen_.half_y())) / nearest;
         return 2 * (seen_.pixel_scale() * radius * stretch + kPrefilterReach);
     }
@@ -249,6 +265,7 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
                 list.surfels += range.count;
         list.cut += draws.cut.statistics;
         list.load += draws.load;
+        list.merged += draws.merged;
         list.surfels += draws.cut.statistics.ellipses + draws.cut.statistics.surfels;
     }
     list.load.frame_pixels = static_cast<double>(width) * height;

@@ -30,6 +30,16 @@ struct DrawRange {
     std::uint32_t patch = 0;     // the first patch of the range
 };
 
+/// Splats that are drawn in place of surfels (merged_surfels.h), and those surfels.
+struct MergedCounts {
+    std::uint64_t splats = 0, surfels = 0;
+    MergedCounts& operator+=(const MergedCounts& other) {
+        splats += other.splats;
+        surfels += other.surfels;
+        return *this;
+    }
+};
+
 struct InstanceDraws {
     const GpuModel* model = nullptr;
     const SurfelStore* surfels = nullptr;  // what `sprites` and `quads` are ranges of
@@ -44,6 +54,7 @@ struct InstanceDraws {
     std::vector<DrawRange> small;    // instead of either: those of DrawListOptions::small_px
     LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; CutStore makes ranges of it
     DrawLoad load = {};
+    MergedCounts merged;
 };
 
 struct DrawList {
@@ -51,6 +62,7 @@ struct DrawList {
     std::uint64_t triangles = 0, surfels = 0;  // ellipses are surfels, too
     CutStatistics cut;                         // of all instances
     DrawLoad load = {};
+    MergedCounts merged;
     double predicted_ms = 0;  // what DrawListOptions::costs make of it
 };
 
@@ -71,6 +83,7 @@ struct DrawListOptions {
     bool force_quads = false;
     double max_point_size = 255;       // pixels, of the device
     double small_px = 0;               // patches whose splats are all at most this wide go to InstanceDraws::small
+    double merge_px = 0;               // pixels by which merged surfels may differ (MergedRange::growth); 0: none are
     double tau = 0;                    // pixels, of the cut (lod_cut.h); 0: full detail
     DrawCosts costs = kSoftwareCosts;  // with tau, surfel patches are drawn by their triangles where those cost less
 };

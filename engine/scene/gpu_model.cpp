@@ -84,10 +84,11 @@ gpu::DescriptorSetLayout material_set_layout(const gpu::Device& device) {
 }
 
 GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging)
-    : GpuModel(device, model, paging, unpack_point_tree(model.point_tree)) {}
+    : GpuModel(device, model, paging, unpack_point_tree(model.point_tree),
+               model.is_packed() || paging.owner ? MergedSurfels{} : merge_surfels(model.surfels, model.patches)) {}
 
 GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
-                   const std::vector<format::PointNode>& tree)
+                   const std::vector<format::PointNode>& tree, MergedSurfels merged)
     : info_(*model.info),
       patches_(model.patches.begin(), model.patches.end()),
       lods_(model.lods.begin(), model.lods.end()),
@@ -96,7 +97,7 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& pa
       hierarchy_(point_hierarchy(tree, model.patches, model.info->max_surfel_radius)),
       surfel_count_(model.surfel_count()),
       paged_(paging.owner && !hierarchy_.empty() && records_of(model).size() > paging.limit),
-      surfels_(device, paged_ ? 0 : model.surfel_count(),
+      surfels_(device, paged_ ? 0 : model.surfel_count() + merged.records.size(),
                model.is_packed() ? SurfelRecords::kPacked : SurfelRecords::kPlain, gpu::MemoryUse::device, "surfels"),
       pool_(device) {
     const auto [low, high] = surface_bounds(model);
@@ -112,6 +113,11 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& pa
     indices_ = buffer("indices", VK_BUFFER_USAGE_INDEX_BUFFER_BIT, std::as_bytes(model.indices));
     const auto records = paged_ ? std::span<const std::byte>() : records_of(model);
     gpu::upload(device, surfels_.buffer(), records);
+    gpu::upload(device, surfels_.buffer(), std::as_bytes(std::span(merged.records)), records.size());
+    merged_levels_ = std::move(merged.levels);
+    for (std::vector<MergedRange>& level : merged_levels_)
+        for (MergedRange& range : level)
+            range.first += surfel_count_;
     if (!paged_ && !hierarchy_.empty() && surfels_.buffer().mapped().empty())
         record_copy_.assign(records.begin(), records.end());
     make_ellipses(model, tree);

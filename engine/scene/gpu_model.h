@@ -4,6 +4,7 @@
 
 #include "engine/scene/camera.h"
 #include "engine/scene/lod_cut.h"
+#include "engine/scene/merged_surfels.h"
 #include "engine/scene/paging.h"
 #include "engine/scene/patch_groups.h"
 #include "engine/scene/surfel_pager.h"
@@ -45,7 +46,11 @@ class GpuModel {
     const std::vector<PatchGroupContent>& group_contents() const { return group_contents_; }
     const gpu::Buffer& vertices() const { return vertices_; }
     const gpu::Buffer& indices() const { return indices_; }
+    /// All surfels, then what stands for them (merged_levels()).
     const SurfelStore& surfels() const { return surfels_; }
+    /// Finest first; a range of surfels() for each patch. None of models that are packed or paged: those have a point
+    /// tree.
+    const std::vector<std::vector<MergedRange>>& merged_levels() const { return merged_levels_; }
     /// Null where all surfels are in surfels(); else those are none, and frames are cuts.
     SurfelPager* pager() const { return pager_.get(); }
     std::uint64_t surfel_count() const { return surfel_count_; }
@@ -71,7 +76,7 @@ class GpuModel {
 
   private:
     GpuModel(gpu::Device& device, const ModelView& model, const Paging& paging,
-             const std::vector<format::PointNode>& tree);
+             const std::vector<format::PointNode>& tree, MergedSurfels merged);
     void make_ellipses(const ModelView& model, const std::vector<format::PointNode>& tree);
     void page(const ModelView& model, const Paging& paging);
     void create_materials(gpu::Device& device, const ModelView& model);
@@ -85,6 +90,7 @@ class GpuModel {
     std::vector<PatchGroupContent> group_contents_;
     PointHierarchy hierarchy_;
     std::vector<format::Surfel> ellipses_;
+    std::vector<std::vector<MergedRange>> merged_levels_;
     gpu::Buffer vertices_, indices_;
     std::uint64_t surfel_count_;
     bool paged_;

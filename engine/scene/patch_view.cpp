@@ -71,14 +71,17 @@ bool PatchView::faces_away(const float (&cone_axis)[3], float cone_cosine, const
     return beta + spread + alpha + kRounding < std::acos(-kHorizon);
 }
 
-std::size_t PatchView::levels_within(std::span<const format::Lod> levels, double tau, double nearest) const {
-    if (tau == 0 || (!camera_.orthographic && nearest <= camera_.near_plane)) return 0;
+bool PatchView::within(double length, double pixels, double nearest) const {
+    if (pixels == 0 || (!camera_.orthographic && nearest <= camera_.near_plane)) return false;
     const double stretch = camera_.orthographic ? 1 : std::hypot(1.0, half_x_, half_y_) / nearest;
-    const double pixels = pixel_scale_ * scale_ * stretch;
-    std::size_t within = 0;
-    while (within < levels.size() && kWorstOfError * static_cast<double>(levels[within].error) * pixels <= tau)
-        ++within;
-    return within;
+    return length * pixel_scale_ * scale_ * stretch <= pixels;
+}
+
+std::size_t PatchView::levels_within(std::span<const format::Lod> levels, double tau, double nearest) const {
+    std::size_t fit = 0;
+    while (fit < levels.size() && within(kWorstOfError * static_cast<double>(levels[fit].error), tau, nearest))
+        ++fit;
+    return fit;
 }
 
 double PatchView::pixels_of(double area, const float (&low)[3], const float (&high)[3], double nearest) const {

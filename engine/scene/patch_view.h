@@ -46,6 +46,9 @@ class PatchView {
     bool faces_away(const float (&cone_axis)[3], float cone_cosine, const float (&low)[3],
                     const float (&high)[3]) const;
 
+    /// Whether a length takes at most so many pixels, whichever way, at this depth.
+    bool within(double length, double pixels, double nearest) const;
+
     /// How many of the levels, finer before coarser, are within `tau` pixels wherever in their bounds they are.
     std::size_t levels_within(std::span<const format::Lod> levels, double tau, double nearest) const;
 

@@ -120,6 +120,26 @@ std::vector<BackendCase> backend_cases() {
                  .add_triangles(quad({0.3f, -0.6f, -2.3f}, {0.6f, 0, 0.6f}, {0, 1.2f, 0}, kGreen));
          },
          eye},
+        {"the eye inside solid disks",
+         [&](HandmadeModel& m) {
+             m.add_surfels(wall(-3, 20, kBlue))
+                 .add_surfels({{{0.2f, 0, -0.1f}, {0.1f, 0.2f, 1}, 1.5f, 0.02f, kRed, 0.9f, 0.9f},
+                               {{0.3f, -0.4f, -1.2f}, {0.3f, 1, 0.2f}, 1.6f, 0.02f, kGreen, 1.2f, 1.2f}});
+         },
+         eye, true},
+        {"centres on the centres of pixels",
+         [&](HandmadeModel& m) {
+             std::vector<Disk> disks;  // 100 pixels a unit
+             for (int y = -30; y < 30; y += 3)
+                 for (int x = -40; x < 40; x += 3)
+                     disks.push_back({{0.01f * static_cast<float>(x), 0.01f * (static_cast<float>(y) + 0.5f), -2},
+                                      {0.2f, 0.1f, 1},
+                                      0.001f * static_cast<float>(1 + (x + 46) % 13),
+                                      0.01f,
+                                      kGreen});
+             m.add_surfels(disks);
+         },
+         parallel(eye, 1.5), true},
         {"nothing but triangles",
          [&](HandmadeModel& m) {
              m.add_triangles(quad({-1, -1, -3}, {2, 0, 0}, {0, 2, 0}, kRed));
@@ -177,7 +197,8 @@ bool drew(const Frame& frame, Backend backend) {
 }
 
 // Every backend against the sprites.
-void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings settings) {
+void check_agreement(Renderer& renderer, const Scene& scene, CaptureSettings settings, double merge_px = 0) {
+    settings.merge_px = merge_px;
     settings.backend = Backend::kSprite;
     const Frame sprite = renderer.render(scene, settings);
     CHECK(sprite.stats.backend == Backend::kSprite);
@@ -248,8 +269,9 @@ TEST_CASE("backends and sprites agree on baked models, transformed, in every vie
     settings.width = 333;
     settings.height = 250;
     for (const bool orthographic : {false, true}) {
-        for (const View view : {View::kShaded, View::kDepth, View::kAccumulation, View::kNormals, View::kPatches,
-                                View::kRepresentation, View::kOverlap, View::kSamples, View::kSurfelsOnly}) {
+        for (const View view :
+             {View::kShaded, View::kDepth, View::kAccumulation, View::kNormals, View::kPatches, View::kRepresentation,
+              View::kWireframe, View::kLevels, View::kOverlap, View::kSamples, View::kSurfelsOnly}) {
             settings.camera = frame_camera(scene.bounds(), {.zoom = 1.4, .orthographic = orthographic}, settings.width,
                                            settings.height);
             settings.view = view;
@@ -272,6 +294,16 @@ TEST_CASE("backends and sprites agree on bumpy spheres in many batches") {
 }
 
 // Minutes, and 2 GB: records and surfels in several bindings.
+TEST_CASE("backends and sprites agree on merged surfels") {
+    Renderer renderer({});
+    const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(200'000, 4))));
+    CaptureSettings settings;
+    settings.width = settings.height = 192;
+    settings.camera.eye = {0.2, 0.1, 5};
+    check_agreement(renderer, scene, settings, kMergePixels);
+    CHECK(renderer.render(scene, settings).stats.merged.splats > 10'000);
+}
+
 TEST_CASE("backends and sprites agree on eight million surfels", "[.long]") {
     Renderer renderer({});
     const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(8'000'000, 2.4))));
@@ -355,7 +387,7 @@ TEST_CASE("backends and sprites agree on kernels") {
         .add_surfels(thick(sheet({-0.4f, -0.3f, -2}, {0.8f, 0.1f, 0}, {0, 0.6f, 0}, 12, kRed)))
         .add_surfels(sheet({-8, -4, -30}, {16, 0, 0}, {0, 8, 0}, 150, kGreen));
     Renderer renderer({});
-    const Scene scene = scene_of(renderer.load(view_of(model.model())));
+    Scene scene = scene_of(renderer.load(view_of(model.model())));
     for (const char* kernel : {"gaussian:0.5", "confetti:4,1.5,5", "constant"})
         for (const bool prefilter : {true, false}) {
             CAPTURE(kernel, prefilter);
@@ -365,6 +397,7 @@ TEST_CASE("backends and sprites agree on kernels") {
             settings.camera = looking_down_z();
             settings.kernel = parse_kernel(kernel).value();
             settings.prefilter = prefilter;
+            scene.background = {.colour = {0.1, 0.4, 0.7}, .transparent = prefilter};
             check_agreement(renderer, scene, settings);
         }
 }

@@ -81,6 +81,7 @@ CaptureSettings small_picture() {
     CaptureSettings settings;
     settings.width = settings.height = 192;
     settings.backend = Backend::kTile;
+    settings.merge_px = 0;
     return settings;
 }
 

@@ -26,6 +26,7 @@ struct Wall {
         settings.camera = looking_down_z();
         settings.camera.eye.z = distance;
         settings.backend = Backend::kTile;
+        settings.merge_px = 0;  // or from afar there would be no full cells
         return settings;
     }
     HandmadeModel model;

@@ -33,6 +33,7 @@
 #include <catch2/catch.hpp>
 #include <spirv_cross/spirv_cross_c.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <fstream>
 #include <iterator>
@@ -255,4 +256,17 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
     const double turn = constant("include/surfel_frame.glsl", "LARGEST_TURN");
     const std::vector<double> bend(std::begin(format::kLargestBend), std::end(format::kLargestBend));
     CHECK(bend == std::vector<double>{lean, lean, turn, turn, turn});
+}
+
+TEST_CASE("no tile takes more rounds of loops than drivers allow, nor shares more memory than devices have") {
+    // llvmpipe ends every loop of an invocation once all its loops have run so often.
+    constexpr double kMostRounds = 65535;
+    constexpr double kBlocks = kTileGroup / kTileBlock;
+    // Handing a block's splats round, finding it among others, and reading as many blocks at once as there are lanes.
+    constexpr double kRoundsABlock = kTileBlock + 1 + 1.0 / kTileWidth;
+    // At once: finding a group's blocks, then seeing, painting, and painting what lacks. In segments: one of these.
+    CHECK(kTileFusedGroups * (1 + 3 * kBlocks * kRoundsABlock) < kMostRounds);
+    CHECK(32 * kTileSegmentWords * (1 + kBlocks * kRoundsABlock) < kMostRounds);
+    // VkPhysicalDeviceLimits::maxComputeSharedMemorySize; a word a block.
+    CHECK(4 * kBlocks * std::max(32 * kTileSegmentWords, kTileFusedGroups) <= 16384);
 }

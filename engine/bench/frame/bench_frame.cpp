@@ -87,6 +87,7 @@ void measure(Renderer& renderer, const BenchScene& bench, const FrameBenchOption
         settings.camera = bench.camera;
         if (bench.model.surfels.empty()) settings.camera = frame_camera(bench.scene.bounds(), {}, width, height);
         fit_clip_planes(settings.camera, bench.scene.drawn_bounds());
+        settings.merge_px = options.merge_px;
         settings.want_overlap = true;
         const FrameStats counted = renderer.render(bench.scene, settings).stats;
         settings.want_overlap = false;
@@ -135,8 +136,10 @@ FrameReport bench_frame(const FrameBenchOptions& options) {
     };
     for (const auto& path : options.files)
         measure(renderer, {path.stem().string(), load_scene(path, renderer).scene, {}}, options, report);
-    for (const std::uint32_t count : options.counts)
+    for (const std::uint32_t count : options.counts) {
         sphere(count, kNear);
+        if (options.far) sphere(count, kFar);
+    }
     if (options.files.empty() && options.counts.empty()) {
         for (const std::uint32_t count : {50'000u, 300'000u, kFarDisks})
             sphere(count, kNear);

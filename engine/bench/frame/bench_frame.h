@@ -3,6 +3,7 @@
 
 #include "engine/bench/frame/frame_report.h"
 #include "engine/scene/backend.h"
+#include "engine/scene/merged_surfels.h"
 #include "engine/scene/shading.h"
 
 #include <cstdint>
@@ -23,6 +24,8 @@ struct FrameBenchOptions {
     std::vector<Backend> backends;                                              // none: all
     std::vector<Shading> shadings = {Shading::kSurfel};
     std::optional<double> points_below = {};  // pixels: CaptureSettings
+    double merge_px = kMergePixels;           // CaptureSettings
+    bool far = false;                         // those of `counts` from afar, too
     bool bare = false;                        // spheres: the baseline, too
     unsigned rounds = 15;                     // timed frames a variant
 };

@@ -41,6 +41,7 @@ CLI::App& add_frame_command(CLI::App& program, FrameCommand& command) {
     app.add_option("--count", options.counts, "Bumpy spheres of so many disks, separated by commas")
         ->delimiter(',')
         ->check(CLI::Range(1U, kMostDisks));
+    app.add_flag("--far", options.far, "Those of --count from so far that they cover 13 % of the frame, too");
     app.add_option("--backend", command.backends, "Only these of " + listed(kBackendNames) + ", separated by commas")
         ->delimiter(',');
     app.add_option("--shading", command.shadings, "Any of " + listed(kShadingNames) + ", separated by commas")
@@ -51,6 +52,8 @@ CLI::App& add_frame_command(CLI::App& program, FrameCommand& command) {
         ->capture_default_str();
     app.add_option("--points-below", options.points_below, "As splice-capture's, 0 to 64 pixels")
         ->check(CLI::Range(0.0, kLargestPoint));
+    app.add_option("--merge", options.merge_px, "As splice-capture's, 0 to 64 pixels")
+        ->check(CLI::Range(0.0, kMostMergePixels));
     app.add_option("--rounds", options.rounds, "Timed frames a variant")
         ->check(CLI::Range(1U, kMostRounds))
         ->capture_default_str();

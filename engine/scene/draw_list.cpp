@@ -25,9 +25,17 @@ class Culler {
           seen_(camera, width, height, draws.model_to_view, draws.scale) {}
 
     void visit_all() {
-        const auto& octree = draws_.model->octree();
         if (groups()) choose_groups();
-        if (!groups_.chosen.empty() && groups_.chosen.front()) return;
+        if (groups_.chosen.empty() || !groups_.chosen.front()) visit_rest();
+        draws_.cut.statistics.groups_by_triangles = groups_.groups.size();
+    }
+
+  private:
+    using Extent = PatchView::Extent;
+
+    // What no group stands for.
+    void visit_rest() {
+        const auto& octree = draws_.model->octree();
         if (cuts()) cut();
         if (octree.empty()) {
             visit_patches(0, static_cast<std::uint32_t>(draws_.model->patches().size()));
@@ -35,9 +43,6 @@ class Culler {
             visit_node(0);
         }
     }
-
-  private:
-    using Extent = PatchView::Extent;
 
     // Whether triangles of several patches together may take the place of both triangles and surfels.
     bool groups() const {
@@ -67,7 +72,6 @@ class Culler {
         const std::vector<double> costs = triangle_costs();
         draws_.cut = cut_points(draws_.model->hierarchy(), cut_view(costs));
         draws_.load.splats = static_cast<double>(draws_.cut.statistics.ellipses + draws_.cut.statistics.surfels);
-        draws_.cut.statistics.groups_by_triangles = groups_.groups.size();
         by_triangles_.assign(draws_.model->patches().size(), false);
         for (const std::uint32_t patch : draws_.cut.triangle_patches)
             by_triangles_[patch] = true;

@@ -77,6 +77,7 @@ struct Cluster {
     std::span<const format::Surfel> surfels;
     glm::vec3 mean{0};
     float shift = 0;  // of the centres, at most
+    float slant = 0;  // of a rim against the disk that holds it, at most; known once merged
 
     explicit Cluster(std::span<const format::Surfel> members) : surfels(members) {
         glm::vec3 sum(0);
@@ -92,12 +93,13 @@ struct Cluster {
         for (const format::Surfel& surfel : surfels)
             sum += vector(decode_octahedral(surfel.normal));
         const float length = glm::length(sum);
+        if (length == 0) return false;
         return std::ranges::all_of(surfels, [&](const format::Surfel& surfel) {
-            return glm::dot(vector(decode_octahedral(surfel.normal)), sum) >= kAgree * length;
+            return radius_of(surfel) > 0 && glm::dot(vector(decode_octahedral(surfel.normal)), sum) >= kAgree * length;
         });
     }
 
-    format::Surfel merged() const {
+    format::Surfel merged() {
         glm::vec3 normal(0), shading(0), colour(0);
         float area = 0;
         for (const format::Surfel& surfel : surfels) {
@@ -127,7 +129,7 @@ struct Cluster {
 
   private:
     // Radius and extent: what the disks and their solids reach.
-    void bound(const glm::vec3& normal, format::Surfel& result) const {
+    void bound(const glm::vec3& normal, format::Surfel& result) {
         float radius = 0, lift = 0, epsilon = 0;
         SurfelExtent solid;
         bool flat = true;
@@ -135,13 +137,14 @@ struct Cluster {
             const float own = radius_of(surfel);
             const glm::vec3 offset = position_of(surfel) - mean;
             const float cosine = std::min(glm::dot(vector(decode_octahedral(surfel.normal)), normal), 1.0f);
-            const float height = glm::dot(offset, normal), slant = own * std::sqrt(1 - cosine * cosine);
+            const float height = glm::dot(offset, normal), lean = own * std::sqrt(1 - cosine * cosine);
+            slant = std::max(slant, lean);
             const SurfelExtent extent = decode_extent(surfel.extent, own);
             radius = std::max(radius, glm::length(offset) + own);
-            lift = std::max(lift, std::abs(height) + slant);
+            lift = std::max(lift, std::abs(height) + lean);
             epsilon = std::max(epsilon, extent.epsilon);
-            solid.above = std::max(solid.above, height + slant + extent.above);
-            solid.below = std::max(solid.below, -height + slant + extent.below);
+            solid.above = std::max(solid.above, height + lean + extent.above);
+            solid.below = std::max(solid.below, -height + lean + extent.below);
             flat = flat && extent.above == 0 && extent.below == 0;
         }
         if (flat) solid.above = solid.below = 0;
@@ -172,12 +175,13 @@ Merged merge(std::span<const format::Surfel> surfels) {
         if (count == 1) {
             merged.records.push_back(surfels[first]);
         } else {
-            const Cluster cluster(surfels.subspan(first, count));
+            Cluster cluster(surfels.subspan(first, count));
             merged.records.push_back(cluster.merged());
-            float largest = 0;
+            float least = std::numeric_limits<float>::infinity();
             for (const format::Surfel& surfel : cluster.surfels)
-                largest = std::max(largest, radius_of(surfel));
-            merged.growth = std::max({merged.growth, cluster.shift, radius_of(merged.records.back()) - largest});
+                least = std::min(least, radius_of(surfel));
+            merged.growth =
+                std::max({merged.growth, cluster.shift, cluster.slant, radius_of(merged.records.back()) - least});
         }
         first += count;
     }

@@ -24,7 +24,8 @@ inline constexpr double kMergePixels = 0.5, kMostMergePixels = 64;
 struct MergedRange {
     std::uint64_t first = 0;  // of MergedSurfels::records
     std::uint32_t count = 0;  // 0: nothing does
-    // Unit-box units: no surfel's centre moves farther, and no disk is larger by more than the largest that it holds.
+    // Unit-box units: no surfel's centre moves farther, no disk is larger by more than any that it holds, and no rim
+    // leaves its plane by more.
     float growth = 0;
 };
 

@@ -53,10 +53,11 @@ void draw_performance_section(PanelContext& context) {
     ViewerState& state = context.state;
     const auto& series = state.measured.history.series();
     int lit = -1;
-    for (std::size_t s = 0; s < series.size(); ++s)
-        if (state.lit_pass >= 0 &&
-            state.measured.graph.passes[static_cast<std::size_t>(state.lit_pass)].name == series[s].name)
-            lit = static_cast<int>(s);
+    const auto& passes = state.measured.graph.passes;
+    // The graph may have become shorter since its pass was lit.
+    const bool lit_now = state.lit_pass >= 0 && static_cast<std::size_t>(state.lit_pass) < passes.size();
+    for (std::size_t s = 0; lit_now && s < series.size(); ++s)
+        if (passes[static_cast<std::size_t>(state.lit_pass)].name == series[s].name) lit = static_cast<int>(s);
     plot(state.measured.history, lit);
     for (std::size_t s = 0; s < series.size(); ++s) {
         const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(pass_colour(s, lit >= 0 && static_cast<int>(s) != lit));

@@ -61,9 +61,11 @@ class ModelPicker {
     void visit_patch(std::uint32_t index) {
         const format::Patch& patch = model_.patches[index];
         if (!meets_box(ray_, patch.bounds_min, patch.bounds_max, nearest_)) return;
-        if (patch.representation == format::Representation::kTriangles) {
-            if (options_.triangles) visit_triangles(index, patch);
-        } else if (options_.surfels) {
+        const bool triangles = patch.representation == format::Representation::kTriangles;
+        if (triangles ? options_.shown != Shown::kSurfels
+                      : options_.shown == Shown::kTriangles && patch.lod_count > 0) {
+            visit_triangles(index, patch);
+        } else if (!triangles && options_.shown != Shown::kTriangles) {
             visit_surfels(index, patch);
         }
     }
@@ -84,7 +86,7 @@ class ModelPicker {
             const double area = glm::dot(normal, normal);
             const double v = glm::dot(glm::cross(p, ac), normal), w = glm::dot(glm::cross(ab, p), normal);
             if (v < 0 || w < 0 || v + w > area) continue;
-            keep(index, patch, first / 3, distance, normal);
+            keep(index, format::Representation::kTriangles, first / 3, distance, normal);
         }
     }
 
@@ -100,18 +102,15 @@ class ModelPicker {
             const glm::dvec3 offset = ray_.origin + ray_.direction * distance - centre;
             const double radius = float_from_half(surfel.radius);
             if (glm::dot(offset, offset) > radius * radius) continue;
-            keep(index, patch, i, distance, normal);
+            keep(index, format::Representation::kSurfels, i, distance, normal);
         }
     }
 
-    void keep(std::uint32_t index, const format::Patch& patch, std::uint64_t element, double distance,
+    void keep(std::uint32_t index, format::Representation kind, std::uint64_t element, double distance,
               const glm::dvec3& normal) {
         nearest_ = distance;
-        hit_ = Hit{.patch = index,
-                   .kind = patch.representation,
-                   .element = element,
-                   .distance = distance,
-                   .normal = glm::normalize(normal)};
+        hit_ = Hit{
+            .patch = index, .kind = kind, .element = element, .distance = distance, .normal = glm::normalize(normal)};
     }
 
     const ModelView& model_;

@@ -4,6 +4,7 @@
 
 #include "engine/scene/draw_list.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/shown.h"
 #include "engine/viewer/camera_controller.h"
 #include "preprocess/model_format/model.h"
 
@@ -20,7 +21,7 @@ struct PickableModel {
 
 struct PickOptions {
     Sides sides = Sides::kAsBaked;
-    bool triangles = true, surfels = true;
+    Shown shown = Shown::kHybrid;
 };
 
 struct Hit {

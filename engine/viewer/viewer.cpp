@@ -95,7 +95,10 @@ void Viewer::run() {
             report(std::string("The window's surface was lost and made anew (") + error.what() + ")", true);
         }
     }
-    if (!options_.script) save_settings(settings_of(state_, window_.size().width, window_.size().height));
+    if (!options_.script) {
+        const VkExtent2D size = window_.unscaled_size();
+        save_settings(settings_of(state_, size.width, size.height));
+    }
     const std::vector<gpu::ValidationMessage> messages = instance_.messages();
     if (!messages.empty())
         throw DeviceError("the validation layers report " + std::to_string(messages.size()) +
@@ -114,6 +117,7 @@ void Viewer::recover() {
     }
     graphics_.reset();
     graphics_.emplace(window_, instance_, device, state_.present_mode);
+    if (shaders_ && shaders_->error().empty()) use_watched_shaders();
     if (state_.scene) {
         kept.instances = upload_scene(state_.scene->prepared, *graphics_->renderer, options_.memory).scene.instances;
         state_.scene->loaded.scene = std::move(kept);
@@ -273,12 +277,16 @@ void Viewer::poll_shaders() {
         report(shaders_->error(), true);
         return;
     }
-    graphics_->device.wait_idle();
-    graphics_->device.replace_shaders(shaders_->shaders());
-    graphics_->renderer = std::make_unique<Renderer>(graphics_->device);
+    use_watched_shaders();
     ++state_.scene_revision;
     state_.messages.clear();
     report("Shaders compiled anew", false);
+}
+
+void Viewer::use_watched_shaders() {
+    graphics_->device.wait_idle();
+    graphics_->device.replace_shaders(shaders_->shaders());
+    graphics_->renderer = std::make_unique<Renderer>(graphics_->device);
 }
 
 void Viewer::update_title() {

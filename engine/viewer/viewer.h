@@ -75,6 +75,7 @@ class Viewer {
     void poll_job();
     void show_scene(const SceneRequest& request, PreparedScene prepared);
     void poll_shaders();
+    void use_watched_shaders();
     void update_title();
     void draw_panels();
     void draw_pictures();

@@ -137,7 +137,8 @@ bool Viewer::handle_key(const InputEvent& event) {
 std::optional<glm::dvec3> Viewer::surface_at(std::size_t index, const glm::dvec2& place) const {
     if (!state_.scene) return std::nullopt;
     const Ray ray = ray_through(state_.camera.camera(), area(index).size, place.x, place.y);
-    const auto hit = pick(state_.scene->pickable, ray, {.sides = state_.looks[index].sides});
+    const auto hit =
+        pick(state_.scene->pickable, ray, {.sides = state_.looks[index].sides, .shown = state_.looks[index].shown});
     if (!hit) return std::nullopt;
     return hit->point;
 }
@@ -145,7 +146,8 @@ std::optional<glm::dvec3> Viewer::surface_at(std::size_t index, const glm::dvec2
 void Viewer::pick_at(const glm::dvec2& place) {
     const std::size_t index = dragged_area_;
     const Ray ray = ray_through(state_.camera.camera(), area(index).size, place.x, place.y);
-    state_.picked = pick(state_.scene->pickable, ray, {.sides = state_.looks[index].sides});
+    state_.picked =
+        pick(state_.scene->pickable, ray, {.sides = state_.looks[index].sides, .shown = state_.looks[index].shown});
 }
 
 }  // namespace splice

@@ -9,6 +9,7 @@
 #include <vulkan/vulkan.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace splice {
 
@@ -175,6 +176,15 @@ void Window::minimise() {
 
 void Window::restore() {
     glfwRestoreWindow(window_);
+}
+
+VkExtent2D Window::unscaled_size() const {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window_, &x, &y);
+    const auto unscaled = [](std::uint32_t size, float scale) {
+        return static_cast<std::uint32_t>(std::lround(static_cast<float>(size) / std::max(scale, 0.01F)));
+    };
+    return {unscaled(size_.width, x), unscaled(size_.height, y)};
 }
 
 void Window::set_content_scale(double scale) {

@@ -36,6 +36,8 @@ class Window {
     // As the last events told: to ask the display would be to wait for it.
     VkExtent2D pixels() const { return minimised_ ? VkExtent2D{0, 0} : pixels_; }  // 0 x 0 while minimised
     VkExtent2D size() const { return size_; }  // in screen coordinates, as cursor positions are
+    /// What WindowOptions must say for a window of this size: they are multiplied by the monitor's scale.
+    VkExtent2D unscaled_size() const;
     double content_scale() const { return content_scale_; }
     bool wants_to_close() const;
     void close();

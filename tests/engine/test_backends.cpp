@@ -293,7 +293,6 @@ TEST_CASE("backends and sprites agree on bumpy spheres in many batches") {
     check_agreement(renderer, scene, settings);
 }
 
-// Minutes, and 2 GB: records and surfels in several bindings.
 TEST_CASE("backends and sprites agree on merged surfels") {
     Renderer renderer({});
     const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(200'000, 4))));
@@ -304,6 +303,7 @@ TEST_CASE("backends and sprites agree on merged surfels") {
     CHECK(renderer.render(scene, settings).stats.merged.splats > 10'000);
 }
 
+// Minutes, and 2 GB: records and surfels in several bindings.
 TEST_CASE("backends and sprites agree on eight million surfels", "[.long]") {
     Renderer renderer({});
     const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(8'000'000, 2.4))));

@@ -100,6 +100,37 @@ TEST_CASE("disks that a line cuts stay, and so do disks that face different ways
     CHECK(merged(folded.model()).records.empty());
 }
 
+TEST_CASE("the two sides of a thin wall, and disks without a size, stay") {
+    std::vector<Disk> wall, points;
+    for (int i = 0; i < 64; ++i) {
+        const float x = static_cast<float>(i / 2) * 0.1f, side = i % 2 == 0 ? 1.0f : -1.0f;
+        wall.push_back({{x, 0, 0.001f * side}, {0, 0, side}, 0.08f, 0.01f, 0xffffffffu});
+        points.push_back({{x + 0.001f * side, 0, 0}, {0, 0, 1}, 0, 0.01f, 0xffffffffu});
+    }
+    HandmadeModel walls, specks;
+    walls.add_surfels(wall);
+    specks.add_surfels(points);
+    CHECK(merged(walls.model()).records.empty());
+    CHECK(merged(specks.model()).records.empty());
+}
+
+TEST_CASE("a small disk within a large one counts as one that grows") {
+    std::vector<Disk> disks;
+    for (int i = 0; i < 64; ++i) {
+        const bool small = i % 2 != 0;
+        disks.push_back({{static_cast<float>(i / 2) * 0.5f + (small ? 0.001f : 0.0f), 0, 0},
+                         {0, 0, 1},
+                         small ? 0.01f : 0.2f,
+                         0.01f,
+                         small ? 0xffffffffu : 0xff000000u});
+    }
+    HandmadeModel model;
+    model.add_surfels(disks);
+    const MergedSurfels all = merged(model.model());
+    for (const std::vector<MergedRange>& level : all.levels)
+        CHECK((level.front().count == 0 || level.front().growth >= 0.19f));
+}
+
 TEST_CASE("colours and normals of merged surfels are means") {
     const glm::vec3 tilted = glm::normalize(glm::vec3(0.2f, 0, 1));
     HandmadeModel model;

@@ -48,6 +48,11 @@ TEST_CASE("a ray meets a sphere of triangles or surfels where the sphere is") {
             const bool surfel = representation == ForcedRepresentation::kSurfels;
             CHECK((hit->kind == format::Representation::kSurfels) == surfel);
             if (surfel) CHECK(model.surfels[hit->element].patch == hit->patch);
+            const auto by_triangles =
+                pick({&pickable, 1}, towards(eye, transform.translation), {.shown = Shown::kTriangles});
+            REQUIRE(by_triangles);
+            CHECK(by_triangles->kind == format::Representation::kTriangles);
+            CHECK(by_triangles->distance == Approx(5).margin(0.02));
         }
         CHECK_FALSE(pick({&pickable, 1}, towards({1, 2, 10}, {9, 2, 3})));
         CHECK_FALSE(pick({&pickable, 1}, {{1, 2, 10}, {0, 0, 1}}));  // away from it
@@ -61,7 +66,7 @@ TEST_CASE("from inside, a closed sphere is invisible unless both sides count") {
     const Ray ray{{0, 0, 0}, glm::normalize(glm::dvec3(0.3, 0.5, 0.8))};
     CHECK_FALSE(pick({&pickable, 1}, ray));
     CHECK(pick({&pickable, 1}, ray, {.sides = Sides::kTwoSided}));
-    CHECK_FALSE(pick({&pickable, 1}, {{0, 0, 5}, {0, 0, -1}}, {.triangles = false}));
+    CHECK_FALSE(pick({&pickable, 1}, {{0, 0, 5}, {0, 0, -1}}, {.shown = Shown::kSurfels}));
 }
 
 TEST_CASE("of several models the nearest is picked, and named") {

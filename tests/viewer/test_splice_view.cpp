@@ -232,9 +232,12 @@ TEST_CASE("of a model larger than --memory no more is held, and pictures become 
         INFO(name);
         const auto pages = nlohmann::json::parse(read_text(folder / (std::string(name) + ".json"))).at("pages");
         CHECK(pages.at("limit_bytes") == kLimit);
-        CHECK(pages.at("resident_bytes") > 0);
         CHECK(pages.at("resident_bytes") <= kLimit);
-        CHECK(pages.at("blocks_read") > 0);
+        // From afar triangles of the whole model may stand for all surfels.
+        if (name == std::string("near")) {
+            CHECK(pages.at("resident_bytes") > 0);
+            CHECK(pages.at("blocks_read") > 0);
+        }
         const Picture window = read_png(folder / (std::string(name) + "-window.png"));
         CHECK(difference(scene_part(window), read_png(folder / (std::string(name) + ".png"))) == 0);
     }

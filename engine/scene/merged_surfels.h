@@ -4,7 +4,8 @@
 //
 // A few consecutive surfels (files keep neighbours together) that lie closer together than most become one disk in
 // their middle, which holds their disks: nothing is left open that they close. Its normal, shading normal and colour
-// are their means by area. It is solid as far as their solids reach; of flat disks it is flat, as their tilt, over a
+// are their means by area. It is solid as far as their solids reach along its normal (how far tilted
+// ones lean sideways is not counted); of flat disks it is flat, as their tilt, over a
 // fraction of a pixel, is less than anybody sees. Disks that a line cuts, and such whose normals differ, stay as they
 // are.
 #pragma once

@@ -181,6 +181,12 @@ std::optional<IndexedMesh> collection_mesh(const std::string& name) {
     return repaired(read_mesh_file(*path));
 }
 
+FaceGraph graph_of(const IndexedMesh& mesh) {
+    FaceGraph faces = measure_faces(mesh, order_faces(mesh));
+    faces.links = link_faces(mesh, faces.face_of_slot, find_face_adjacency(mesh, faces.face_of_slot));
+    return faces;
+}
+
 IndexedMesh random_blob(std::uint32_t n, std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto wobble = [&] { return 0.2 * (static_cast<double>(random()) / 4294967296.0 - 0.5); };

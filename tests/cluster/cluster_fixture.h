@@ -2,6 +2,7 @@
 #pragma once
 
 #include "preprocess/cluster/cluster_mesh.h"
+#include "preprocess/cluster/face_graph.h"
 #include "preprocess/mesh/read_mesh.h"
 
 #include <initializer_list>
@@ -19,6 +20,9 @@ IndexedMesh bare_mesh(const std::vector<Vec3d>& positions, const std::vector<Tri
 
 /// One of the models of the collection, e.g. "bunny.smf"; nothing (and a message) when the collection is absent.
 std::optional<IndexedMesh> collection_mesh(const std::string& name);
+
+/// The faces, in order, and what they adjoin.
+FaceGraph graph_of(const IndexedMesh& mesh);
 
 /// A closed wavy sphere of 4 * n * (n - 1) triangles with a poor triangulation, from a fixed random sequence.
 IndexedMesh random_blob(std::uint32_t n, std::uint32_t seed);

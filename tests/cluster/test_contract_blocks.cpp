@@ -16,12 +16,6 @@ using namespace splice::test;
 
 namespace {
 
-FaceGraph graph_of(const IndexedMesh& mesh) {
-    FaceGraph faces = measure_faces(mesh, order_faces(mesh));
-    faces.links = link_faces(mesh, faces.face_of_slot, find_face_adjacency(mesh, faces.face_of_slot));
-    return faces;
-}
-
 ClusterLevel level_of(const FaceGraph& faces) {
     ClusterLevel level;
     level.clusters = ClusterTable(faces).take();

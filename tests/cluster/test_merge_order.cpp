@@ -16,12 +16,6 @@ using namespace splice::test;
 
 namespace {
 
-FaceGraph graph_of(const IndexedMesh& mesh) {
-    FaceGraph faces = measure_faces(mesh, order_faces(mesh));
-    faces.links = link_faces(mesh, faces.face_of_slot, find_face_adjacency(mesh, faces.face_of_slot));
-    return faces;
-}
-
 const auto everyone = [](std::uint32_t) { return true; };
 const auto silent = [](std::size_t) {};
 

@@ -9,8 +9,10 @@
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/surfel_extent.h"
 #include "preprocess/surfel/surfel_set.h"
+#include "tests/engine/frame_colours.h"
 #include "tests/engine/frame_holes.h"
 #include "tests/engine/handmade_model.h"
+#include "tests/engine/mesh_model.h"
 #include "tests/engine/test_cameras.h"
 
 #include <catch2/catch.hpp>
@@ -41,22 +43,6 @@ PointCloud striped_sphere(std::size_t count) {
 Model cloud_model(std::size_t count) {
     BakeStats stats;
     return build_cloud_model(striped_sphere(count), {}, stats);
-}
-
-// Half triangles, half surfels.
-Model mesh_model() {
-    RepairReport report;
-    BakeOptions options;
-    options.cluster.triangle_share = 0.5;
-    BakeStats stats;
-    return build_model(repair_mesh(shapes::bumpy_sphere(20'000), {}, report, "bumpy sphere"), options, stats);
-}
-
-metrics::ColourImage colours_of(const Frame& frame) {
-    metrics::ColourImage image(frame.width, frame.height);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = {frame.rgba[4 * i], frame.rgba[4 * i + 1], frame.rgba[4 * i + 2]};
-    return image;
 }
 
 std::vector<glm::dvec3> directions() {

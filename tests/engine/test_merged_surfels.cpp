@@ -7,8 +7,10 @@
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/surfel_clip.h"
+#include "tests/engine/frame_colours.h"
 #include "tests/engine/frame_holes.h"
 #include "tests/engine/handmade_model.h"
+#include "tests/engine/mesh_model.h"
 #include "tests/engine/test_cameras.h"
 
 #include <catch2/catch.hpp>
@@ -33,22 +35,6 @@ bool holds(const format::Surfel& outer, const format::Surfel& inner) {
 
 MergedSurfels merged(const Model& model) {
     return merge_surfels(model.surfels, model.patches);
-}
-
-// Half triangles, half surfels.
-Model mesh_model() {
-    RepairReport report;
-    BakeOptions options;
-    options.cluster.triangle_share = 0.5;
-    BakeStats stats;
-    return build_model(repair_mesh(shapes::bumpy_sphere(20'000), {}, report, "bumpy sphere"), options, stats);
-}
-
-metrics::ColourImage colours_of(const Frame& frame) {
-    metrics::ColourImage image(frame.width, frame.height);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = {frame.rgba[4 * i], frame.rgba[4 * i + 1], frame.rgba[4 * i + 2]};
-    return image;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "preprocess/model_format/octahedral.h"
 #include "preprocess/model_format/packed_surfel.h"
 #include "preprocess/model_format/surfel_extent.h"
+#include "tests/engine/frame_colours.h"
 
 #include <catch2/catch.hpp>
 
@@ -76,11 +77,7 @@ Model unpacked(Model model) {
 }
 
 metrics::ColourImage picture(Renderer& renderer, const Model& model, const CaptureSettings& settings) {
-    const Frame frame = renderer.render(scene_of(renderer.load(view_of(model))), settings);
-    metrics::ColourImage image(frame.width, frame.height);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = {frame.rgba[4 * i], frame.rgba[4 * i + 1], frame.rgba[4 * i + 2]};
-    return image;
+    return test::colours_of(renderer.render(scene_of(renderer.load(view_of(model))), settings));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "preprocess/simplify/simplify_patches.h"
+#include "tests/simplify/open_edges.h"
 #include "tests/simplify/patch_meshes.h"
 
 #include <catch2/catch.hpp>
@@ -11,11 +12,12 @@
 #include <set>
 
 using namespace splice;
+using test::directed_edges;
 using test::divide;
+using test::Edge;
+using test::open_edges;
 
 namespace {
-
-using Edge = std::pair<std::uint32_t, std::uint32_t>;  // render vertices, in the direction of the triangle
 
 struct Simplified {
     IndexedMesh mesh;
@@ -38,23 +40,6 @@ struct Simplified {
     }
     Vec3f position(std::uint32_t vertex) const { return mesh.positions[render.position[vertex]]; }
 };
-
-std::map<Edge, int> directed_edges(std::span<const std::uint32_t> indices) {
-    std::map<Edge, int> edges;
-    for (std::size_t i = 0; i < indices.size(); i += 3)
-        for (std::size_t k = 0; k < 3; ++k)
-            ++edges[{indices[i + k], indices[i + (k + 1) % 3]}];
-    return edges;
-}
-
-// Edges without a partner in the opposite direction: the border of a level, and its attribute seams.
-std::set<Edge> open_edges(std::span<const std::uint32_t> indices) {
-    const auto edges = directed_edges(indices);
-    std::set<Edge> open;
-    for (const auto& [edge, count] : edges)
-        if (!edges.contains({edge.second, edge.first})) open.insert(edge);
-    return open;
-}
 
 void check_levels(const Simplified& s) {
     std::uint64_t finest_begin = 0;

@@ -1,4 +1,5 @@
 #include "preprocess/simplify/simplify_regions.h"
+#include "tests/simplify/open_edges.h"
 #include "tests/simplify/patch_meshes.h"
 
 #include <catch2/catch.hpp>
@@ -9,27 +10,12 @@
 #include <set>
 
 using namespace splice;
+using test::directed_edges;
 using test::divide;
+using test::Edge;
+using test::open_edges;
 
 namespace {
-
-using Edge = std::pair<std::uint32_t, std::uint32_t>;  // render vertices, in the direction of the triangle
-
-std::map<Edge, int> directed_edges(std::span<const std::uint32_t> indices) {
-    std::map<Edge, int> edges;
-    for (std::size_t i = 0; i < indices.size(); i += 3)
-        for (std::size_t k = 0; k < 3; ++k)
-            ++edges[{indices[i + k], indices[i + (k + 1) % 3]}];
-    return edges;
-}
-
-std::set<Edge> open_edges(std::span<const std::uint32_t> indices) {
-    const auto edges = directed_edges(indices);
-    std::set<Edge> open;
-    for (const auto& [edge, count] : edges)
-        if (!edges.contains({edge.second, edge.first})) open.insert(edge);
-    return open;
-}
 
 // A bumpy sphere in 64 patches; an octree of 8 nodes of 8 patches below the root.
 struct Sphere {

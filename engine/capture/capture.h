@@ -8,6 +8,7 @@
 //   Frame frame = renderer.render(scene_of(model), settings);
 #pragma once
 
+#include "engine/passes/splat_plan.h"
 #include "engine/render_graph/executor/executor.h"
 #include "engine/render_graph/export/export.h"
 #include "engine/render_graph/export/frame_picture.h"
@@ -71,6 +72,8 @@ struct CaptureSettings {
                                               // points by every backend but sprites; none: as the backend chooses
     bool wait_for_data = true;  // of paged models, until all that the frame needs is in memory; else nodes
                                 // of the point tree stand for what is not
+    bool cull_groups = true;    // false: compute passes look at surfels too of which bounds tell that none can be seen;
+                                // the picture is the same
     bool force_quads = false;   // draw every surfel as an oriented quad, none as a point sprite
     friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
 };
@@ -105,6 +108,7 @@ struct FrameStats {
     double frame_ms = 0;              // submission to completion of the frame, readback included
     std::vector<PassTime> passes;     // in order of execution
     MergedCounts merged;              // of those
+    SetupCounts setup = {};           // where compute passes draw
     std::uint64_t surfels_drawn = 0;  // sent to the device after culling by patch
     std::uint64_t triangles_drawn = 0;
     DrawLoad load = {};

@@ -150,6 +150,7 @@ FrameSettings Renderer::Implementation::frame_settings(const CaptureSettings& se
             .prefilter = settings.prefilter,
             .kernel = settings.kernel,
             .shading = settings.shading,
+            .cull_groups = settings.cull_groups,
             .lighting = lighting_flags(lighting)};
 }
 
@@ -209,6 +210,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;
     stats->merged = draws.merged;
+    if (backend.techniques) stats->setup = passes.splats.counts();
     stats->triangles_drawn = draws.triangles;
 }
 

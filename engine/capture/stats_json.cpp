@@ -42,6 +42,13 @@ nlohmann::ordered_json json_of(const PageStats& pages) {
     return json;
 }
 
+nlohmann::ordered_json json_of(const SetupCounts& setup) {
+    return {{"groups", setup.groups},
+            {"certain_groups", setup.certain_groups},
+            {"surfels", setup.surfels},
+            {"culled_surfels", setup.culled_surfels}};
+}
+
 nlohmann::ordered_json json_of(const FrameStats& stats) {
     nlohmann::ordered_json json;
     json["device"] = stats.device;
@@ -57,6 +64,7 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
         json["passes"].push_back(json_of(pass));
     json["surfels_drawn"] = stats.surfels_drawn;
     if (stats.merged.splats > 0) json["merged"] = {{"splats", stats.merged.splats}, {"surfels", stats.merged.surfels}};
+    if (stats.backend != Backend::kSprite) json["setup"] = json_of(stats.setup);
     json["triangles_drawn"] = stats.triangles_drawn;
     json["predicted_ms"] = stats.predicted_ms;
     json["costs_us"] = costs_json(stats.costs);

@@ -67,7 +67,7 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
 
     if (is_deferred(settings)) targets.normals = image("normals", passes.formats.accumulation);
 
-    if (backend.techniques) passes.splats.plan(draws, *backend.techniques);
+    if (backend.techniques) passes.splats.plan(draws, *backend.techniques, settings);
     const bool composed = backend.techniques && passes.splats.composes(settings);
     passes.triangle.add(graph, targets, settings, draws,
                         composed ? std::optional(empty_picture(settings.view, background)) : std::nullopt);

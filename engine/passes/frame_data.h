@@ -28,6 +28,7 @@ struct FrameSettings {
     bool prefilter = true;
     Kernel kernel = {};
     Shading shading = Shading::kSurfel;
+    bool cull_groups = true;     // see CaptureSettings
     std::uint32_t lighting = 0;  // lighting_flags() of the lights that FrameData is updated with
 };
 

@@ -120,10 +120,11 @@ bool SplatPasses::uses(Technique technique) const {
                        [&](const SplatBatch& batch) { return batch.range(technique).count > 0; });
 }
 
-void SplatPasses::plan(const DrawList& draws, const Techniques& techniques) {
-    SplatPlan planned = plan_splats(draws, techniques, buffers_.most_groups(most_groups_));
+void SplatPasses::plan(const DrawList& draws, const Techniques& techniques, const FrameSettings& settings) {
+    SplatPlan planned = plan_splats(draws, techniques, buffers_.most_groups(most_groups_), settings);
     batches_ = std::move(planned.batches);
     groups_ = std::move(planned.groups);
+    counts_ = planned.counts;
 }
 
 SurfelOwnership SplatPasses::add(graph::Graph& graph, graph::Bindings& bindings, FrameTargets& targets,

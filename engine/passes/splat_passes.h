@@ -34,7 +34,8 @@ class SplatPasses {
     double default_points_below(Backend wanted) const;
 
     /// What draws which surfels of the frame. `draws` must live until the frame's graph has been executed.
-    void plan(const DrawList& draws, const Techniques& techniques);
+    void plan(const DrawList& draws, const Techniques& techniques, const FrameSettings& settings);
+    const SetupCounts& counts() const { return counts_; }
     /// Whether there is anything to draw.
     bool empty() const { return groups_.empty(); }
     /// Whether the passes finish the picture themselves, over what targets.picture has of triangles; else the normalise
@@ -101,6 +102,7 @@ class SplatPasses {
     bool summed_ = false;  // something is in the sums
     std::vector<SplatBatch> batches_;
     std::vector<SplatGroup> groups_;  // of all batches
+    SetupCounts counts_;
 };
 
 }  // namespace splice

@@ -1,6 +1,7 @@
 // Which technique draws which surfels, and how a frame's surfels are cut into batches that fit the buffers.
 #pragma once
 
+#include "engine/passes/frame_data.h"
 #include "engine/scene/backend.h"
 #include "engine/scene/draw_list.h"
 
@@ -26,8 +27,10 @@ struct Techniques {
 /// Surfels that one workgroup of setup works on: at most kTileGroup consecutive ones of the bound set. tile.glsl,
 /// GroupSources.
 struct SplatGroup {
-    std::uint32_t first_surfel, count;
+    std::uint32_t first_surfel;
+    std::uint32_t count;  // with kGroupShows
 };
+inline constexpr std::uint32_t kGroupShows = 1u << 31;  // setup need not look for those that cannot be seen
 static_assert(sizeof(SplatGroup) == 8);
 
 /// Groups of one chunk of a model, set up by one dispatch: their number, their first in the batch, and in the plan.
@@ -50,12 +53,22 @@ struct SplatBatch {
     const GroupRange& range(Technique technique) const { return ranges[static_cast<std::size_t>(technique)]; }
 };
 
+/// Surfels that the host kept from setup, and from the part of setup that looks for what cannot be seen.
+struct SetupCounts {
+    std::uint64_t groups = 0, surfels = 0;  // sent to setup
+    std::uint64_t culled_surfels = 0;       // not sent
+    std::uint64_t certain_groups = 0;       // with kGroupShows
+};
+
 struct SplatPlan {
     std::vector<SplatBatch> batches;  // at least one
     std::vector<SplatGroup> groups;   // of all batches
+    SetupCounts counts;
 };
 
-/// Batches of at most `most_groups` groups each. `draws` must outlive the result.
-SplatPlan plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups);
+/// Batches of at most `most_groups` groups each, without what SurfelBounds tell not to be seen in such a frame: the
+/// picture is the same. `draws` must outlive the result.
+SplatPlan plan_splats(const DrawList& draws, const Techniques& techniques, std::uint64_t most_groups,
+                      const FrameSettings& settings);
 
 }  // namespace splice

@@ -114,6 +114,7 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& pa
     const auto records = paged_ ? std::span<const std::byte>() : records_of(model);
     gpu::upload(device, surfels_.buffer(), records);
     gpu::upload(device, surfels_.buffer(), std::as_bytes(std::span(merged.records)), records.size());
+    if (!paged_) surfels_.set_bounds(bound_surfels(model, merged.records));
     merged_levels_ = std::move(merged.levels);
     for (std::vector<MergedRange>& level : merged_levels_)
         for (MergedRange& range : level)

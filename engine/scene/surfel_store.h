@@ -1,6 +1,7 @@
 // Surfel records on a device: as vertices of passes that rasterise, and as texels of those that compute.
 #pragma once
 
+#include "engine/scene/surfel_bounds.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
 #include "engine/vulkan/device.h"
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace splice {
@@ -43,6 +45,9 @@ class SurfelStore {
     const std::vector<SurfelChunk>& chunks() const { return chunks_; }
     /// Of a store of plain records, where the host sees them; empty if it does not.
     std::span<format::Surfel> mapped() const;
+    /// Of what was put there, kBoundedSurfels each; empty: not known.
+    std::span<const SurfelBounds> bounds() const { return bounds_; }
+    void set_bounds(std::vector<SurfelBounds> bounds) { bounds_ = std::move(bounds); }
 
   private:
     SurfelRecords records_;
@@ -53,6 +58,7 @@ class SurfelStore {
     gpu::DescriptorPool pool_;
     std::vector<gpu::UniqueBufferView> views_;
     std::vector<SurfelChunk> chunks_;
+    std::vector<SurfelBounds> bounds_;
 };
 
 }  // namespace splice

@@ -151,11 +151,13 @@ void main() {
     if (workgroup >= instance.surfel_count) return;
     const uint number = turn_of(workgroup, instance.surfel_count);
     const uvec2 source = group_sources[instance.first_word + number];
-    const uint first = source.x, end = source.x + source.y;
+    // Those of some groups need no look at each: all that is known of them says that they show.
+    const bool certain = (source.y & GROUP_SHOWS) != 0;
+    const uint first = source.x, end = source.x + (source.y & ~GROUP_SHOWS);
     const uint group = instance.first_group + number;
     const uint lane = gl_LocalInvocationID.x;
 
-    uint kept = 0, batch = first;
+    uint kept = 0, batch = certain ? end : first;
     do {
         const uint index = batch + lane;
         const bool shows = index < end && may_show(min(index, end - 1));
@@ -164,6 +166,7 @@ void main() {
         kept += subgroupBallotBitCount(all);
         batch += gl_WorkGroupSize.x;
     } while (batch < end);
+    if (certain) kept = end - first;
     subgroupMemoryBarrierShared();
     subgroupBarrier();
 
@@ -176,7 +179,8 @@ void main() {
         do {
             const uint i = block * BLOCK + lane;
             PixelBounds bounds =
-                record_surfel(i < kept, remaining[min(i, kept - 1)], group * GROUP + i);
+                record_surfel(i < kept, certain ? first + min(i, kept - 1) : remaining[min(i, kept - 1)],
+                              group * GROUP + i);
             const bool solid = subgroupBallot(bounds.solid).x != 0;
             shown += subgroupBallotBitCount(subgroupBallot(bounds.low.x < bounds.high.x));
             bounds = united(bounds);

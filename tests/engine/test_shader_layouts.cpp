@@ -229,6 +229,7 @@ TEST_CASE("constants that C++ and GLSL share have the same values") {
         return std::stod(match[1]);
     };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
+    CHECK(constant("include/splat.glsl", "PREFILTER_REACH") == kSetupReach);
     CHECK(constant("include/frame.glsl", "LIGHTING_HIGHLIGHTS") == std::uint32_t{kLightingHighlights});
     CHECK(constant("include/frame.glsl", "LIGHTING_PHONG") == std::uint32_t{kLightingPhong});
     CHECK(constant("include/frame.glsl", "LIGHTING_RIM") == std::uint32_t{kLightingRim});

@@ -60,7 +60,8 @@ layout(set = 2, binding = 8, std430) buffer SplatList {
 }
 list;
 
-// What each workgroup of setup works on: the first surfel, and how many.
+// What each workgroup of setup works on: the first surfel, and how many, with GROUP_SHOWS.
+const uint GROUP_SHOWS = 1 << 31;  // kGroupShows
 layout(set = 2, binding = 10, std430) readonly buffer GroupSources {
     uvec2 group_sources[];
 };

@@ -73,63 +73,62 @@ PixelBounds bounds_of(Splat splat, out vec2 reach) {
     return PixelBounds(uvec2(first), uvec2(beyond), false, false);
 }
 
-// What one invocation records at `place`; a place without a splat reaches nothing.
+// What one invocation records at `place`; a place without a splat reaches nothing. Only stores are branched over.
 PixelBounds record_surfel(bool takes_part, uint surfel_index, uint place) {
-    PixelBounds bounds = PixelBounds(uvec2(0xffff), uvec2(0), false, false);
-    uvec4 reaches = pack_place(vec2(0), vec2(-1e4), 0);
-    const int texel = int(place * RECORD_TEXELS);
-    if (takes_part) {
-        const SurfelRecord record = decode_surfel(first_of(surfel_index), second_of(surfel_index), surfel_index);
-        Splat splat;
-        SurfelFrame surfel;
-        const bool drawn = surfel_splat(record, splat, surfel);
-        vec2 reach;
-        const PixelBounds own = bounds_of(splat, reach);
-        if (drawn && all(lessThan(own.low, own.high))) {
-            bounds = own;
-            reaches = pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth));
-            SurfelColour colour;
-            if (DEFERRED) {
-                const SurfelNormals normals = surfel_normals(record, surfel);
-                colour = SurfelColour(normals.centre, normals.along_u, normals.along_v);
-            } else {
-                colour = surfel_colour(record, surfel);
-            }
-            const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
-            const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
-            const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
-            // Rounded up, so that nothing on the disk is beyond it.
-            const float rise = splat.rise * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth) * (1 + 1.0 / 512) + 1e-7;
-            // What is narrower than a fraction of a pixel is so small that nobody sees its shape.
-            const bool speck = is_sub_pixel(splat);
-            const bool near =
-                splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane;
-            uint marks = speck ? MARK_SPECK : solid_marks(record);
-            marks |= near ? MARK_NEAR : 0;
-            bounds.solid = (marks & ~MARK_SPECK) != 0;
-            const vec2 gains = splat.swell * vec2(climb, -climb);
-            const bool large = any(greaterThan(own.high - own.low, uvec2(LARGE_SOLID)));
-            bounds.close =
-                near || (bounds.solid && (large || (!ORTHOGRAPHIC && min(gains.x, gains.y) < LEAST_GAIN)));
-            imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
-            imageStore(records, texel + 2,
-                       uvec4(floatBitsToUint(splat.g * to_z), (floatBitsToUint(push) & ~MARKS) | marks,
-                             packHalf2x16(vec2(min(rise, 6e4), colour.along_v.b))));
-            imageStore(records, texel + 3,
-                       uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
-                             packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
-            const int solid_texel = int(first_solid + 2 * place);
-            if (bounds.solid)
-                imageStore(records, solid_texel,
-                           uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
-            if (DEFERRED || bounds.solid) {
-                const vec3 clip = (marks & MARK_CUT) != 0 ? decode_clip(record.clip) : NO_CLIP;
-                imageStore(records, solid_texel + 1,
-                           pack_last(clip, (marks & MARK_SWELL) != 0 ? record.extent & EXTENT_SWELL : 0, DEFERRED ? surfel_albedo(record) : vec3(0)));
-            }
-        }
+    const SurfelRecord record = decode_surfel(first_of(surfel_index), second_of(surfel_index), surfel_index);
+    Splat splat;
+    SurfelFrame surfel;
+    const bool drawn = surfel_splat(record, splat, surfel);
+    vec2 reach;
+    PixelBounds bounds = bounds_of(splat, reach);
+    const bool recorded = takes_part && drawn && all(lessThan(bounds.low, bounds.high));
+    const uvec2 size = bounds.high - bounds.low;
+    bounds.low = recorded ? bounds.low : uvec2(0xffff);
+    bounds.high = recorded ? bounds.high : uvec2(0);
+    SurfelColour colour;
+    if (DEFERRED) {
+        const SurfelNormals normals = surfel_normals(record, surfel);
+        colour = SurfelColour(normals.centre, normals.along_u, normals.along_v);
+    } else {
+        colour = surfel_colour(record, surfel);
     }
-    imageStore(records, texel, reaches);
+    const float to_z = ORTHOGRAPHIC ? 1 / depth_range() : 1;
+    const float push = splat.epsilon * (ORTHOGRAPHIC ? to_z : 1 / frame.near_plane);
+    const float climb = splat.skew.z * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth);
+    // Rounded up, so that nothing on the disk is beyond it.
+    const float rise = splat.rise * (ORTHOGRAPHIC ? to_z : 1 / splat.anchor_depth) * (1 + 1.0 / 512) + 1e-7;
+    // What is narrower than a fraction of a pixel is so small that nobody sees its shape.
+    const bool speck = is_sub_pixel(splat);
+    const bool near = splat.plane_offset != vec2(0) || splat.anchor_depth - splat.rise < frame.near_plane;
+    const uint marks = (speck ? MARK_SPECK : solid_marks(record)) | (near ? MARK_NEAR : 0);
+    const bool solid = recorded && (marks & ~MARK_SPECK) != 0;
+    const vec2 gains = splat.swell * vec2(climb, -climb);
+    const bool large = any(greaterThan(size, uvec2(LARGE_SOLID)));
+    bounds.solid = solid;
+    bounds.close = recorded &&
+                   (near || (solid && (large || (!ORTHOGRAPHIC && min(gains.x, gains.y) < LEAST_GAIN))));
+
+    const int texel = int(place * RECORD_TEXELS), solid_texel = int(first_solid + 2 * place);
+    const uvec4 reaches = pack_place(splat.anchor, reach, encode_depth(splat.anchor_depth));
+    imageStore(records, texel, recorded ? reaches : pack_place(vec2(0), vec2(-1e4), 0));
+    if (recorded) {
+        imageStore(records, texel + 1, floatBitsToUint(splat.plane_map));
+        imageStore(records, texel + 2,
+                   uvec4(floatBitsToUint(splat.g * to_z), (floatBitsToUint(push) & ~MARKS) | marks,
+                         packHalf2x16(vec2(min(rise, 6e4), colour.along_v.b))));
+        imageStore(records, texel + 3,
+                   uvec4(packHalf2x16(colour.centre.rg), packHalf2x16(vec2(colour.centre.b, colour.along_u.r)),
+                         packHalf2x16(colour.along_u.gb), packHalf2x16(colour.along_v.rg)));
+    }
+    if (solid)
+        imageStore(records, solid_texel,
+                   uvec4(floatBitsToUint(vec3(splat.skew.xy, climb)), packSnorm2x16(splat.plane_offset)));
+    if (solid || (DEFERRED && recorded)) {
+        const vec3 clip = (marks & MARK_CUT) != 0 ? decode_clip(record.clip) : NO_CLIP;
+        imageStore(records, solid_texel + 1,
+                   pack_last(clip, (marks & MARK_SWELL) != 0 ? record.extent & EXTENT_SWELL : 0,
+                             DEFERRED ? surfel_albedo(record) : vec3(0)));
+    }
     return bounds;
 }
 

@@ -17,15 +17,16 @@ Light light_at(LightRecord light, vec3 normal, vec3 position) {
         strength /= 1 + light.colour.a * dot(offset, offset);
     }
     const float cosine = dot(normal, to_light);
-    if (cosine <= 0) return Light(vec3(0), vec3(0));
+    // Choices, not branches: see make_splat.
+    const bool unlit = cosine <= 0;
     vec3 highlight = vec3(0);
     if ((LIGHTING & LIGHTING_HIGHLIGHTS) != 0) {
         const vec3 to_eye = normalize(towards_eye(position));
         const float lobe = (LIGHTING & LIGHTING_PHONG) != 0 ? dot(reflect(-to_light, normal), to_eye)
                                             : dot(normal, normalize(to_light + to_eye));
-        highlight = strength * pow(max(lobe, 0), frame.shininess);
+        highlight = unlit ? vec3(0) : strength * pow(max(lobe, 0), frame.shininess);
     }
-    return Light(strength * cosine, highlight);
+    return Light(unlit ? vec3(0) : strength * cosine, highlight);
 }
 
 // What a surface seen at a grazing angle adds, whatever the lights.

@@ -121,6 +121,9 @@ vec4 clip_line(vec3 clip, Splat splat) {
     return vec4(l, l0 - CLIP_SLACK * length(l), ORTHOGRAPHIC ? skewed : clip.z + skewed);
 }
 
+// Software devices compute both sides of a branch, and carry each value that either writes through memory: so there are
+// no branches, nor early ends, but choices between values.
+//
 // `centre`, unit `normal` and its tangents `s`, `t` in view space, `radius` along s and `epsilon` in world units; the
 // half axis along t is `ratio` of it, 1 for a disk. False: nothing of it can be seen.
 bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ratio, vec2 swell, vec3 clip,
@@ -134,22 +137,19 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ra
     const float thickness = radius * max(swell.x, swell.y);
     splat.swell = swell;
     splat.rise = radius * steepness + thickness * abs(normal.z);
-    if (depth + splat.rise <= frame.near_plane) return false;
+    const bool nearer = depth + splat.rise <= frame.near_plane;
     const bool crosses_near = depth - splat.rise < frame.near_plane;
 
-    vec3 p = centre;
-    splat.plane_offset = vec2(0);
-    if (crosses_near) {
-        // A disk that faces the eye crosses by its thickness alone.
-        if (steepness > 0) splat.plane_offset = slope / steepness;
-        p += radius * (splat.plane_offset.x * s + splat.plane_offset.y * t);
-        splat.rise *= 2;
-        if (-p.z <= 0) return false;  // only the thickness reaches past the near plane, over the eye's head
-    }
+    // A disk that faces the eye crosses by its thickness alone.
+    splat.plane_offset = crosses_near && steepness > 0 ? slope / steepness : vec2(0);
+    const vec3 p = centre + radius * (splat.plane_offset.x * s + splat.plane_offset.y * t);
+    splat.rise *= crosses_near ? 2 : 1;
     splat.anchor_depth = -p.z;
+    // Only the thickness reaches past the near plane, over the eye's head.
+    const bool overhead = crosses_near && splat.anchor_depth <= 0;
     const vec3 ray = ORTHOGRAPHIC ? vec3(0, 0, -1) : vec3(p.xy / splat.anchor_depth, -1);
     float facing = dot(normal, ray);
-    if (abs(facing) < MIN_COSINE) facing = facing < 0 ? -MIN_COSINE : MIN_COSINE;
+    facing = abs(facing) < MIN_COSINE ? (facing < 0 ? -MIN_COSINE : MIN_COSINE) : facing;
     const vec3 dx = vec3(1 / frame.pixel_scale, 0, 0), dy = vec3(0, -1 / frame.pixel_scale, 0);
     splat.g = vec2(dot(normal, dx), dot(normal, dy)) / facing;
     const float reach = (ORTHOGRAPHIC ? 1 : splat.anchor_depth) / radius;
@@ -160,14 +160,6 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ra
     splat.skew = vec3(dot(s, off_axis), dot(to_v, off_axis), radius / facing);
     splat.clip = clip_line(clip, splat);
     splat.epsilon = epsilon * clamp(TILT * length(ray) / abs(facing), 1, MAX_STRETCH);
-
-    if (crosses_near) {
-        // No affine approximation holds here; the exact disk alone decides, wherever on the screen that is.
-        splat.conic = vec3(NOWHERE, 0, NOWHERE);
-        splat.weight = 1;
-        splat.disk_bounds = splat.splat_bounds = vec4(0, 0, frame.viewport);
-        return true;
-    }
 
     // Rows of J times the radius: how the window position changes along the tangents.
     const float eta = frame.pixel_scale * radius;
@@ -188,24 +180,23 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ra
         splat.disk_bounds =
             frame.viewport.xyxy * 0.5 + frame.pixel_scale * (vec4(x.x, y.x, x.y, y.y) + vec4(-faces, faces));
     }
-    if (frame.prefilter == 0 && KERNEL_SUPPORT <= 1) {
-        splat.conic = vec3(NOWHERE, 0, NOWHERE);
-        splat.weight = 1;
-        splat.splat_bounds = splat.disk_bounds;
-        return true;
-    }
+    // At the near plane no affine approximation holds; the exact disk alone decides, wherever on the screen that is.
+    splat.disk_bounds = crosses_near ? vec4(0, 0, frame.viewport) : splat.disk_bounds;
+    const bool exact = crosses_near || (frame.prefilter == 0 && KERNEL_SUPPORT <= 1);
     // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1; of other kernels with their moment and support.
     const float filtered = frame.prefilter == 0 ? 1e-4 : PREFILTER;
     const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * KERNEL_MOMENT + filtered * vec3(1, 0, 1);
     const float determinant = v.x * v.z - v.y * v.y;
-    splat.conic = vec3(v.z, -v.y, v.x) / determinant;
+    splat.conic = exact ? vec3(NOWHERE, 0, NOWHERE) : vec3(v.z, -v.y, v.x) / determinant;
     // A Gaussian of height 1 on the surface, filtered by the pixel's of volume 1: sqrt(|J V_r J^T| / |V|). Splats
     // smaller than a pixel count by the area they cover.
-    splat.weight = max(KERNEL_MOMENT * abs(jx.x * jy.y - jx.y * jy.x) * inversesqrt(determinant), MIN_WEIGHT);
+    splat.weight =
+        exact ? 1 : max(KERNEL_MOMENT * abs(jx.x * jy.y - jx.y * jy.x) * inversesqrt(determinant), MIN_WEIGHT);
     const vec2 extent = sqrt(KERNEL_SUPPORT2 / KERNEL_MOMENT * vec2(v.x, v.z));
-    splat.splat_bounds = vec4(min(splat.disk_bounds.xy, splat.anchor - extent),
-                              max(splat.disk_bounds.zw, splat.anchor + extent));
-    return true;
+    splat.splat_bounds = exact ? splat.disk_bounds
+                               : vec4(min(splat.disk_bounds.xy, splat.anchor - extent),
+                                      max(splat.disk_bounds.zw, splat.anchor + extent));
+    return !(nearer || overhead);
 }
 
 // A flag in the sign of a number that is not negative, which saves the fragments an input.

@@ -28,21 +28,22 @@ const float CLIP_STEPS = 1023;
 
 vec3 decode_clip(uint bits) {
     const uint cut = bits >> 6;
-    if (cut == 0) return NO_CLIP;
     const float turn = 6.283185307 / CLIP_DIRECTIONS * float(bits & 63);
-    return vec3(cos(turn), sin(turn), 1 - float(cut) / CLIP_STEPS);
+    return cut == 0 ? NO_CLIP : vec3(cos(turn), sin(turn), 1 - float(cut) / CLIP_STEPS);
 }
 
 // kAxisDirections, kAxisSteps of engine/scene/ellipse_record.h
 const float AXIS_DIRECTIONS = 256;
 const float AXIS_STEPS = 255;
 
-void turn_to_axes(uint axes, inout SurfelFrame surfel) {
-    const float turn = 3.141592654 / AXIS_DIRECTIONS * float(axes & 0xff);
+// Of an ellipse, to its axes.
+void turn_to_axes(SurfelRecord record, inout SurfelFrame surfel) {
+    const bool turns = is_ellipse(record);
+    const float turn = 3.141592654 / AXIS_DIRECTIONS * float(record.clip & 0xff);
     const vec3 s = surfel.s, t = surfel.t;
-    surfel.s = cos(turn) * s + sin(turn) * t;
-    surfel.t = cos(turn) * t - sin(turn) * s;
-    surfel.ratio = float(axes >> 8) / AXIS_STEPS;
+    surfel.s = turns ? cos(turn) * s + sin(turn) * t : s;
+    surfel.t = turns ? cos(turn) * t - sin(turn) * s : t;
+    surfel.ratio = turns ? float(record.clip >> 8) / AXIS_STEPS : 1;
 }
 
 // The splat of a surfel; false if it is not to be drawn.
@@ -53,22 +54,23 @@ bool surfel_splat(SurfelRecord record, out Splat splat, out SurfelFrame surfel) 
     tangents_of(model_normal, surfel.s, surfel.t);
     surfel.s = normal_to_view_space(surfel.s);
     surfel.t = normal_to_view_space(surfel.t);
-    surfel.ratio = 1;
-    if (is_ellipse(record)) turn_to_axes(record.clip, surfel);
-    const bool two_sided = (instance.flags & INSTANCE_TWO_SIDED) != 0;
-    if (!two_sided && beyond_horizon(normal, centre)) return false;
+    turn_to_axes(record, surfel);
+    const bool away = (instance.flags & INSTANCE_TWO_SIDED) == 0 && beyond_horizon(normal, centre);
     const float baked_radius = abs(record.radius) * instance.scale;
     float radius = baked_radius;
+    bool drawn = !away;
     if (VIEW == VIEW_SAMPLES) {
-        if (!in_sample(record.position)) return false;
+        drawn = drawn && in_sample(record.position);
         radius *= frame.sample_radius;
     }
     surfel.radius = radius;
     const vec2 swell = decode_extent(record.extent).xy;
-    return make_splat(centre, normal, surfel.s, surfel.t, radius, surfel.ratio,
-                      VIEW == VIEW_SAMPLES ? vec2(0) : swell,
-                      VIEW == VIEW_SAMPLES || is_ellipse(record) ? NO_CLIP : decode_clip(record.clip),
-                      record.epsilon * baked_radius * instance.epsilon_scale, splat);
+    const vec3 clip = decode_clip(record.clip);
+    const bool made = make_splat(centre, normal, surfel.s, surfel.t, radius, surfel.ratio,
+                                 VIEW == VIEW_SAMPLES ? vec2(0) : swell,
+                                 VIEW == VIEW_SAMPLES || is_ellipse(record) ? NO_CLIP : clip,
+                                 record.epsilon * baked_radius * instance.epsilon_scale, splat);
+    return drawn && made;
 }
 
 // format::kLargestBend

@@ -156,14 +156,14 @@ void GpuModel::create_materials(gpu::Device& device, const ModelView& model) {
 }
 
 void GpuModel::page(const ModelView& model, const Paging& paging) {
-    std::vector<std::uint32_t> level(hierarchy_.nodes.size(), 1);
+    std::vector<std::uint32_t> level(hierarchy_.size(), 1);
     for (std::uint32_t i = 0; i < level.size(); ++i) {
-        const std::uint32_t children = hierarchy_.details[i].child_count;
+        const std::uint32_t children = hierarchy_.child_counts[i];
         if (children == 0) leaves_.push_back({i, level[i]});
         for (std::uint32_t child = 0; child < children; ++child)
-            level[hierarchy_.nodes[i].first_child + child] = level[i] + 1;
+            level[hierarchy_.first_child[i] + child] = level[i] + 1;
     }
-    std::ranges::sort(leaves_, {}, [&](const TreeLeaf& leaf) { return hierarchy_.nodes[leaf.node].first_surfel; });
+    std::ranges::sort(leaves_, {}, [&](const TreeLeaf& leaf) { return hierarchy_.first_surfel[leaf.node]; });
     const std::span<const std::byte> records = records_of(model);
     if (paging.release) paging.release(records);
     pager_ = std::make_unique<SurfelPager>(records.size(), paging.limit,

@@ -1,264 +1,276 @@
-// Pajarola et al. 2004, section 6.2. All in the model's unit-box space, where nodes need not be transformed. A visit
-// takes no division and no angle: what the paper compares is multiplied out.
+// Pajarola et al. 2004, section 6.2: a walk down the tree, siblings at a time (sibling_verdicts.h).
 #include "engine/scene/lod_cut.h"
 
-#include "engine/scene/splat_reach.h"
-#include "preprocess/model_format/octahedral.h"
+#include "engine/scene/sibling_verdicts.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <bit>
+#include <cstring>
 #include <limits>
-#include <numbers>
+#include <utility>
 
 namespace splice {
 
 namespace {
 
-constexpr std::size_t kConeSteps = 255;  // format::PointNode::cone_angle
 // Subtrees that are walked at once.
 constexpr std::size_t kTasks = 64;
 constexpr int kMostRounds = 8;
-// Surfels that are not worth looking for nodes that face away.
-constexpr std::uint32_t kHardlyAway = 256;
-
-struct Visit {
-    std::uint32_t node;
-    std::uint32_t level;
-    bool inside;          // its disks are wholly in the frustum
-    bool chosen = false;  // a patch of which surfels are to be drawn
+// Nodes side by side that the walk has reached.
+struct Siblings {
+    std::uint32_t first = 0, count = 0;
+    std::uint32_t level = 0;
+    bool inside = false;  // their disks are wholly in the frustum
+    bool chosen = false;  // of a patch of which surfels are to be drawn
 };
 
-// How far the axis of a cone may be from the eye's side: the cosine and sine of what is left between the cone's rim and
-// the horizon.
-struct Limit {
-    double cosine = 2, sine = 0;  // never
+// What becomes of siblings, a bit each.
+struct Fates {
+    std::uint32_t pending = 0;                             // not yet dealt with
+    std::uint32_t ellipses = 0, surfels = 0, choices = 0;  // the others are descended into
+    std::uint32_t inside = 0;                              // as SiblingVerdicts
+    std::uint32_t fits = 0;                                // CutRun::fits_point
 };
 
-// Indexed by cone_angle.
-std::array<Limit, kConeSteps + 1> cone_limits() {
-    constexpr double kRounding = 1e-3;  // radians; normals are quantised
-    const double horizon = std::acos(-kHorizon) - kRounding;
-    std::array<Limit, kConeSteps + 1> limits;
-    for (std::size_t step = 0; step <= kConeSteps; ++step) {
-        const double left = horizon - static_cast<double>(step) * (std::numbers::pi / kConeSteps);
-        if (left > 0) limits[step] = {std::cos(left), std::sin(left)};
-    }
-    return limits;
-}
-
-// What all visits of a walk share.
+// What all of a walk share.
 class Rules {
   public:
-    Rules(const PointHierarchy& hierarchy, const CutView& view) : hierarchy_(hierarchy), view_(view) {
-        const double inverse = 1 / view.scale;
-        const auto row = [&](int r) {
-            return glm::dvec4(view.model_to_view[0][r], view.model_to_view[1][r], view.model_to_view[2][r],
-                              view.model_to_view[3][r]) *
-                   inverse;
-        };
-        const glm::dvec4 right = row(0), up = row(1), depth = -row(2);
-        depth_ = depth;
-        // Distances beyond the four sides, in units that make them lengths.
-        const auto side = [&](const glm::dvec4& across, double half) {
-            if (view.orthographic) return across - glm::dvec4(0, 0, 0, half * inverse);
-            return (across - half * depth) / std::hypot(1.0, half);
-        };
-        sides_ = {side(right, view.half_x), side(-right, view.half_x), side(up, view.half_y), side(-up, view.half_y)};
-        near_ = view.near_plane * inverse;
-        slack_ = kPrefilterReach / view.pixel_scale * (view.orthographic ? inverse : 1.0);
-        eye_ = -(right.w * glm::dvec3(right) + up.w * glm::dvec3(up) + depth.w * glm::dvec3(depth));
-        const double pixels = view.pixel_scale * (view.orthographic ? view.scale : 1.0);
-        longest_ = view.tau / (2 * pixels);
-        const double stretch = view.orthographic ? 1 : 1 + std::max(view.half_x, view.half_y);
-        largest_point_ = (view.max_point_size / 2 - kPrefilterReach) / (pixels * std::numbers::sqrt2 * stretch);
+    Rules(const PointHierarchy& hierarchy, const CutView& view)
+        : hierarchy_(hierarchy), view_(view), judge_(hierarchy, view) {}
+
+    const PointHierarchy& hierarchy() const { return hierarchy_; }
+
+    Fates decide(const Siblings& siblings, CutStatistics& statistics) const {
+        const std::uint32_t all = (1u << siblings.count) - 1;
+        const SiblingVerdicts verdicts = judge_.judge(siblings.first, siblings.count);
+        statistics.visited += siblings.count;
+        Fates fates;
+        fates.pending = all;
+        std::uint32_t in_part = 0;
+        if (!view_.left_out.empty()) leave_out(siblings.first, fates.pending, in_part);
+        fates.inside = verdicts.inside();
+        if (siblings.inside) {
+            fates.inside = all;
+        } else {
+            statistics.outside_frustum += ones(fates.pending & verdicts.outside());
+            fates.pending &= ~verdicts.outside();
+        }
+        statistics.facing_away += ones(fates.pending & verdicts.away());
+        fates.pending &= ~verdicts.away();
+        fates.ellipses = verdicts.small() & fates.pending & ~in_part;
+        const std::uint64_t kinds = kinds_of(siblings.first);
+        const std::uint32_t others = fates.pending & ~fates.ellipses & ~in_part;
+        if (!siblings.chosen && !view_.triangle_costs.empty()) fates.choices = others & which(kinds, kPatchNode);
+        // Where nothing below is small enough from anywhere, either, there is nothing left to decide; but for nodes
+        // that face away, if they are worth looking for.
+        const std::uint32_t full =
+            verdicts.never() & verdicts.fine() & fates.inside & (view_.two_sided ? all : which(kinds, kSmallNode));
+        fates.surfels = others & ~fates.choices & (full | which(kinds, kLeafNode));
+        fates.fits = fates.inside & ((fates.ellipses & verdicts.narrow()) | (fates.surfels & verdicts.fine()));
+        return fates;
     }
 
-    enum class Step { kEnd, kDescend, kChoose };
-
-    // What becomes of a node; where it ends the walk, what is drawn of it is in the cut.
-    Step decide(const Visit& visit, bool& inside, LodCut& cut) const {
-        const CutNode& node = hierarchy_.nodes[visit.node];
-        ++cut.statistics.visited;
-        const glm::dvec3 centre(node.centre[0], node.centre[1], node.centre[2]);
-        const auto radius = static_cast<double>(node.radius);
-        const double depth = glm::dot(glm::dvec3(depth_), centre) + depth_.w;
-        inside = visit.inside;
-        const Left left = left_of(visit.node);
-        if (left == Left::kNone) return Step::kEnd;
-        if (!inside && outside(centre, depth, radius, inside)) {
-            ++cut.statistics.outside_frustum;
-            return Step::kEnd;
-        }
-        const glm::dvec3 from_eye = centre - eye_;
-        const double distance2 = glm::dot(from_eye, from_eye);
-        const CutNodeDetail& detail = hierarchy_.details[visit.node];
-        if (!view_.two_sided && faces_away(detail, from_eye, distance2, radius)) {
-            ++cut.statistics.facing_away;
-            return Step::kEnd;
-        }
-        if (left == Left::kSome) return Step::kDescend;
-        const std::uint32_t surfels = hierarchy_.surfel_counts[visit.node];
-        const double nearest = depth - radius;
-        if (small_enough(static_cast<double>(node.extent), nearest, distance2)) {
-            ++cut.statistics.ellipses;
-            cut.statistics.merged_surfels += surfels;
-            append(cut, {visit.node, 1, true, fits_point(inside, radius, nearest), visit.level});
-            return Step::kEnd;
-        }
-        if (detail.is_patch && !visit.chosen && !view_.triangle_costs.empty()) return Step::kChoose;
-        const double reach = std::min(radius, static_cast<double>(hierarchy_.largest_radius));
-        const bool fits = fits_point(inside, reach, nearest);
-        // Where nothing below is small enough from anywhere, either, there is nothing left to decide.
-        const bool full = inside && fits && (view_.two_sided || surfels <= kHardlyAway) &&
-                          static_cast<double>(node.finest) > longest_ * (view_.orthographic ? 1 : depth + radius);
-        if (!full && detail.child_count != 0) return Step::kDescend;
-        cut.statistics.surfels += surfels;
-        append(cut, {node.first_surfel, surfels, false, fits, 0});
-        return Step::kEnd;
+    Siblings children_of(const Siblings& siblings, const Fates& fates, std::uint32_t i) const {
+        const std::uint32_t node = siblings.first + i;
+        return {hierarchy_.first_child[node], hierarchy_.child_counts[node], siblings.level + 1,
+                (fates.inside >> i & 1) != 0, siblings.chosen};
     }
 
     std::uint32_t patch_of(std::uint32_t node) const {
         return std::lower_bound(hierarchy_.patches.begin(), hierarchy_.patches.end(), std::pair{node, 0U})->second;
     }
     double triangle_cost(std::uint32_t patch) const { return view_.triangle_costs[patch]; }
-    const PointHierarchy& hierarchy() const { return hierarchy_; }
+
+    std::uint32_t first_surfel(std::uint32_t node) const { return hierarchy_.first_surfel[node]; }
+    std::uint32_t end_surfel(std::uint32_t node) const {
+        return hierarchy_.first_surfel[node] + hierarchy_.surfel_counts[node];
+    }
 
   private:
-    enum class Left { kAll, kSome, kNone };
-
-    // Of a node's surfels, but for CutView::left_out.
-    Left left_of(std::uint32_t node) const {
-        if (view_.left_out.empty()) return Left::kAll;
-        const std::uint32_t first = hierarchy_.nodes[node].first_surfel, end = first + hierarchy_.surfel_counts[node];
-        const auto next =
-            std::ranges::upper_bound(view_.left_out, first, {}, [](const auto& range) { return range.second; });
-        if (next == view_.left_out.end() || next->first >= end) return Left::kAll;
-        return next->first <= first && next->second >= end ? Left::kNone : Left::kSome;
+    static std::uint64_t ones(std::uint32_t bits) {
+        return bits == 0 ? 0 : static_cast<std::uint64_t>(std::popcount(bits));
     }
 
-    bool outside(const glm::dvec3& centre, double depth, double radius, bool& inside) const {
-        const double slack = slack_ * (view_.orthographic ? 1 : std::max(depth + radius, 0.0));
-        double farthest = near_ - depth;
-        if (farthest > radius) return true;
-        for (const glm::dvec4& side : sides_) {
-            const double beyond = glm::dot(glm::dvec3(side), centre) + side.w;
-            if (beyond > radius + slack) return true;
-            farthest = std::max(farthest, beyond);
+    // A byte a sibling, the first's the lowest.
+    std::uint64_t kinds_of(std::uint32_t first) const {
+        std::uint64_t kinds;
+        std::memcpy(&kinds, hierarchy_.kinds.data() + first, sizeof(kinds));
+        return kinds;
+    }
+    // Of the siblings that are of a kind. The product moves the lowest bit of byte i to bit 56 + i.
+    static std::uint32_t which(std::uint64_t kinds, NodeKind kind) {
+        const std::uint64_t ones = kinds / kind & 0x0101010101010101;
+        return static_cast<std::uint32_t>(ones * 0x0102040810204080 >> 56);
+    }
+
+    // CutView::left_out holds all of a node's surfels, or some.
+    void leave_out(std::uint32_t first, std::uint32_t& pending, std::uint32_t& in_part) const {
+        for (std::uint32_t rest = pending; rest != 0; rest &= rest - 1) {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+            const std::uint32_t begin = first_surfel(first + i), end = end_surfel(first + i);
+            const auto next =
+                std::ranges::upper_bound(view_.left_out, begin, {}, [](const auto& range) { return range.second; });
+            if (next == view_.left_out.end() || next->first >= end) continue;
+            if (next->first <= begin && next->second >= end)
+                pending &= ~(1u << i);
+            else
+                in_part |= 1u << i;
         }
-        inside = farthest < -radius;
-        return false;
-    }
-
-    // beta + theta + alpha < 90 degrees (figure 11 b), and some for what shaders draw beyond the horizon: with L what
-    // the cone leaves of that, alpha < L and cos beta > cos(L - alpha), times the distance.
-    bool faces_away(const CutNodeDetail& node, const glm::dvec3& from_eye, double distance2, double radius) const {
-        static const std::array<Limit, kConeSteps + 1> limits = cone_limits();
-        const Limit& limit = limits[node.cone_angle];
-        const glm::dvec3 normal(node.normal[0], node.normal[1], node.normal[2]);
-        if (view_.orthographic) return glm::dot(normal, glm::dvec3(depth_)) > limit.cosine;
-        const double radius2 = radius * radius;
-        if (limit.sine * limit.sine * distance2 <= radius2) return false;
-        const double beyond = glm::dot(normal, from_eye) - limit.sine * radius;
-        return beyond > 0 && beyond * beyond > limit.cosine * limit.cosine * (distance2 - radius2);
-    }
-
-    // Whether a length takes at most tau pixels wherever around the node it is. A unit takes that many times
-    // distance / nearest^2 there, the norm of the projection's derivative, which is largest across the picture's
-    // middle.
-    bool small_enough(double extent, double nearest, double distance2) const {
-        if (view_.orthographic) return extent <= longest_;
-        const double most = longest_ * nearest * nearest;
-        return nearest > near_ && extent * extent * distance2 <= most * most;
-    }
-
-    bool fits_point(bool inside, double radius, double nearest) const {
-        return inside && radius <= largest_point_ * (view_.orthographic ? 1 : nearest);
-    }
-
-    static void append(LodCut& cut, const CutRun& run) {
-        if (!cut.runs.empty()) {
-            CutRun& last = cut.runs.back();
-            if (last.inner == run.inner && last.fits_point == run.fits_point && last.level == run.level &&
-                last.first + last.count == run.first) {
-                last.count += run.count;
-                return;
-            }
-        }
-        cut.runs.push_back(run);
     }
 
     const PointHierarchy& hierarchy_;
     const CutView& view_;
-    glm::dvec4 depth_;                 // of a point: dot(xyz, p) + w, unit-box units
-    std::array<glm::dvec4, 4> sides_;  // the same of what it is beyond a side of the frustum
-    glm::dvec3 eye_;
-    double near_, slack_;
-    double longest_;        // half axis that takes tau pixels at depth 1, or anywhere
-    double largest_point_;  // radius of a disk that fits the largest point there
+    SiblingJudge judge_;
+};
+
+// Runs as they grow; the last is written when the next begins.
+class Runs {
+  public:
+    void add(std::uint32_t first, std::uint32_t count, bool inner, bool fits_point, std::uint32_t level) {
+        if (open_.count != 0 && open_.first + open_.count == first && open_.inner == inner &&
+            open_.fits_point == fits_point && open_.level == level) {
+            open_.count += count;
+            return;
+        }
+        close();
+        open_ = {first, count, inner, fits_point, level};
+    }
+
+    std::vector<CutRun> take() {
+        close();
+        open_ = {};
+        return std::move(closed_);
+    }
+
+    struct Mark {
+        std::size_t closed;
+        CutRun open;
+    };
+    Mark mark() const { return {closed_.size(), open_}; }
+    void go_back(const Mark& mark) {
+        closed_.resize(mark.closed);
+        open_ = mark.open;
+    }
+
+  private:
+    void close() {
+        if (open_.count != 0) closed_.push_back(open_);
+    }
+
+    std::vector<CutRun> closed_;
+    CutRun open_;
 };
 
 // One subtree, depth first.
 class Walk {
   public:
-    Walk(const Rules& rules, LodCut& cut) : rules_(rules), cut_(cut) {}
+    explicit Walk(const Rules& rules) : rules_(rules) {}
 
-    void run(const Visit& root) { run(root, std::numeric_limits<double>::infinity()); }
+    void run(const Siblings& root) { run(root, std::numeric_limits<double>::infinity()); }
 
-    // Triangles or surfels for the patch of a node.
-    void choose(const Visit& visit) {
-        const std::uint32_t patch = rules_.patch_of(visit.node);
-        const double cost = rules_.triangle_cost(patch);
-        const CutStatistics before = cut_.statistics;
-        const std::size_t runs = cut_.runs.size();
-        const CutRun last = runs == 0 ? CutRun{} : cut_.runs.back();
-        // Surfels would be one at least.
-        const bool within = cost >= 1 && run({visit.node, visit.level, visit.inside, true}, elements(before) + cost);
-        // The patch itself was visited twice.
-        const std::uint64_t visited = cut_.statistics.visited - (cost >= 1 ? 1 : 0);
-        if (!within) {
-            cut_.runs.resize(runs);
-            if (runs != 0) cut_.runs.back() = last;
-            cut_.statistics = before;
-            cut_.triangle_patches.push_back(patch);
-            ++cut_.statistics.patches_by_triangles;
-        }
-        cut_.statistics.visited = visited;
+    // One level of it: `descend` is called, in order, with what is below and all that comes before that.
+    template <typename Descend>
+    void step(const Siblings& siblings, const Descend& descend) {
+        Fates fates = rules_.decide(siblings, statistics_);
+        while (fates.pending != 0)
+            if (const int i = advance(siblings, fates); i >= 0)
+                descend(take(), rules_.children_of(siblings, fates, static_cast<std::uint32_t>(i)));
+    }
+
+    LodCut take() {
+        LodCut cut{runs_.take(), std::move(triangle_patches_), statistics_};
+        triangle_patches_.clear();
+        statistics_ = {};
+        return cut;
     }
 
   private:
-    static double elements(const CutStatistics& counts) {
-        return static_cast<double>(counts.ellipses + counts.surfels);
-    }
+    struct Frame {
+        Siblings siblings;
+        Fates fates;
+    };
+
+    double elements() const { return static_cast<double>(statistics_.ellipses + statistics_.surfels); }
 
     // False if it ended because the cut has more than `most` elements.
-    bool run(const Visit& root, double most) {
+    bool run(const Siblings& root, double most) {
         const std::size_t base = stack_.size();
-        stack_.push_back(root);
-        while (stack_.size() > base) {
-            const Visit visit = stack_.back();
-            stack_.pop_back();
-            bool inside = false;
-            const Rules::Step step = rules_.decide(visit, inside, cut_);
-            if (step == Rules::Step::kChoose) {
-                choose({visit.node, visit.level, inside});
-            } else if (step == Rules::Step::kDescend) {
-                const std::uint32_t first = rules_.hierarchy().nodes[visit.node].first_child;
-                for (std::uint32_t child = rules_.hierarchy().details[visit.node].child_count; child-- > 0;)
-                    stack_.push_back({first + child, visit.level + 1, inside, visit.chosen});
-            } else if (elements(cut_.statistics) > most) {
+        Siblings siblings = root;
+        Fates fates = rules_.decide(siblings, statistics_);
+        while (true) {
+            while (fates.pending != 0) {
+                const int i = advance(siblings, fates);
+                if (i < 0) continue;
+                if (fates.pending != 0) stack_.push_back({siblings, fates});
+                siblings = rules_.children_of(siblings, fates, static_cast<std::uint32_t>(i));
+                fates = rules_.decide(siblings, statistics_);
+            }
+            if (elements() > most) {
                 stack_.resize(base);
                 return false;
             }
+            if (stack_.size() == base) return true;
+            siblings = stack_.back().siblings;
+            fates = stack_.back().fates;
+            stack_.pop_back();
         }
-        return true;
+    }
+
+    // Deals with the next of siblings, and with those beside it of the same fate; or says which is to be descended
+    // into.
+    int advance(const Siblings& siblings, Fates& fates) {
+        const int i = std::countr_zero(fates.pending);
+        const std::uint32_t bit = 1u << i, node = siblings.first + static_cast<std::uint32_t>(i);
+        if (((fates.ellipses | fates.surfels) & bit) == 0) {
+            fates.pending ^= bit;
+            if ((fates.choices & bit) == 0) return i;
+            choose({node, 1, siblings.level, (fates.inside & bit) != 0, true});
+            return -1;
+        }
+        const bool inner = (fates.ellipses & bit) != 0, fits = (fates.fits & bit) != 0;
+        const std::uint32_t alike = (inner ? fates.ellipses : fates.surfels) & (fits ? fates.fits : ~fates.fits);
+        // From the lowest pending bit on, up to the first that is not alike.
+        const std::uint32_t run = alike & ~(alike + bit);
+        const std::uint32_t end = siblings.first + static_cast<std::uint32_t>(std::bit_width(run));
+        fates.pending &= ~run;
+        const std::uint32_t first = rules_.first_surfel(node), surfels = rules_.end_surfel(end - 1) - first;
+        if (inner) {
+            statistics_.ellipses += end - node;
+            statistics_.merged_surfels += surfels;
+            runs_.add(node, end - node, true, fits, siblings.level);
+        } else {
+            statistics_.surfels += surfels;
+            runs_.add(first, surfels, false, fits, 0);
+        }
+        return -1;
+    }
+
+    // Triangles or surfels for the patch of a node.
+    void choose(const Siblings& patch_node) {
+        const std::uint32_t patch = rules_.patch_of(patch_node.first);
+        const double cost = rules_.triangle_cost(patch);
+        const CutStatistics before = statistics_;
+        const Runs::Mark mark = runs_.mark();
+        // Surfels would be one at least.
+        const bool within = cost >= 1 && run(patch_node, elements() + cost);
+        // The patch itself was visited twice.
+        const std::uint64_t visited = statistics_.visited - (cost >= 1 ? 1 : 0);
+        if (!within) {
+            runs_.go_back(mark);
+            statistics_ = before;
+            triangle_patches_.push_back(patch);
+            ++statistics_.patches_by_triangles;
+        }
+        statistics_.visited = visited;
     }
 
     const Rules& rules_;
-    LodCut& cut_;
-    std::vector<Visit> stack_;
+    Runs runs_;
+    std::vector<std::uint32_t> triangle_patches_;
+    CutStatistics statistics_;
+    std::vector<Frame> stack_;
 };
 
 }  // namespace
@@ -275,95 +287,53 @@ CutStatistics& CutStatistics::operator+=(const CutStatistics& other) {
     return *this;
 }
 
-float extent_of(const format::PointNode& node) {
-    return std::max(node.major, node.sphere_radius);
-}
-
-PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
-                               float largest_radius) {
-    PointHierarchy hierarchy;
-    hierarchy.largest_radius = largest_radius;
-    hierarchy.nodes.resize(nodes.size());
-    hierarchy.details.resize(nodes.size());
-    hierarchy.surfel_counts.resize(nodes.size());
-    for (std::size_t i = nodes.size(); i-- > 0;) {
-        const format::PointNode& node = nodes[i];
-        const float extent = node.surfel_count > 1 ? extent_of(node) : std::numeric_limits<float>::infinity();
-        float finest = extent;
-        for (std::uint32_t child = 0; child < node.child_count; ++child)
-            finest = std::min(finest, hierarchy.nodes[node.first_child + child].finest);
-        hierarchy.nodes[i] = {{node.position[0], node.position[1], node.position[2]},
-                              node.sphere_radius,
-                              extent,
-                              finest,
-                              node.first_child,
-                              node.first_surfel};
-        const std::array<float, 3> normal = decode_octahedral(node.normal);
-        hierarchy.details[i] = {{normal[0], normal[1], normal[2]}, node.cone_angle, node.child_count, false, 0};
-        hierarchy.surfel_counts[i] = node.surfel_count;
-    }
-    // Breadth first, so that of nodes with the same surfels the uppermost is found.
-    std::vector<bool> found(patches.size(), false);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto next = std::upper_bound(
-            patches.begin(), patches.end(), nodes[i].first_surfel,
-            [](std::uint64_t surfel, const format::Patch& p) { return surfel < p.first_surfel + p.surfel_count; });
-        if (next == patches.end() || next->first_surfel != nodes[i].first_surfel ||
-            next->surfel_count != nodes[i].surfel_count)
-            continue;
-        const auto patch = static_cast<std::size_t>(next - patches.begin());
-        if (!found[patch]) {
-            hierarchy.patches.emplace_back(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(patch));
-            hierarchy.details[i].is_patch = true;
-        }
-        found[patch] = true;
-    }
-    return hierarchy;
-}
-
 LodCut cut_points(const PointHierarchy& hierarchy, const CutView& view) {
     LodCut cut;
     if (hierarchy.empty()) return cut;
     const Rules rules(hierarchy, view);
-    // What is decided and what is not yet, in order: cuts, each with the visit that comes after it.
+    // What is decided and what is not yet, in order: cuts, each with what comes after it.
     struct Task {
         LodCut before;
-        Visit visit{};
-        bool pending = false;
+        Siblings after;  // none: nothing
     };
     std::vector<Task> tasks(1);
-    tasks.front() = {{}, {0, 1, false}, true};
+    tasks.front().after = {0, 1, 1, false, false};
     for (int round = 0; round < kMostRounds && tasks.size() < kTasks; ++round) {
         std::vector<Task> next;
         for (Task& task : tasks) {
-            if (!task.pending) {
+            if (task.after.count == 0) {
                 next.push_back(std::move(task));
                 continue;
             }
-            bool inside = false;
-            const Rules::Step step = rules.decide(task.visit, inside, task.before);
-            if (step == Rules::Step::kChoose)
-                Walk(rules, task.before).choose({task.visit.node, task.visit.level, inside});
-            next.push_back({std::move(task.before), {}, false});
-            if (step != Rules::Step::kDescend) continue;
-            const std::uint32_t first = hierarchy.nodes[task.visit.node].first_child;
-            for (std::uint32_t child = 0; child < hierarchy.details[task.visit.node].child_count; ++child)
-                next.push_back({{}, {first + child, task.visit.level + 1, inside}, true});
+            next.push_back({std::move(task.before), {}});
+            Walk walk(rules);
+            walk.step(task.after, [&](LodCut before, const Siblings& below) {
+                next.push_back({std::move(before), below});
+            });
+            next.push_back({walk.take(), {}});
         }
         tasks = std::move(next);
     }
+    std::vector<LodCut> after(tasks.size());
     tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
-        if (tasks[i].pending) Walk(rules, tasks[i].before).run(tasks[i].visit);
+        if (tasks[i].after.count == 0) return;
+        Walk walk(rules);
+        walk.run(tasks[i].after);
+        after[i] = walk.take();
     });
+    const auto append = [&](const LodCut& part) {
+        cut.runs.insert(cut.runs.end(), part.runs.begin(), part.runs.end());
+        cut.triangle_patches.insert(cut.triangle_patches.end(), part.triangle_patches.begin(),
+                                    part.triangle_patches.end());
+        cut.statistics += part.statistics;
+    };
     std::size_t runs = 0;
-    for (const Task& task : tasks)
-        runs += task.before.runs.size();
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+        runs += tasks[i].before.runs.size() + after[i].runs.size();
     cut.runs.reserve(runs);
-    for (const Task& task : tasks) {
-        cut.runs.insert(cut.runs.end(), task.before.runs.begin(), task.before.runs.end());
-        cut.triangle_patches.insert(cut.triangle_patches.end(), task.before.triangle_patches.begin(),
-                                    task.before.triangle_patches.end());
-        cut.statistics += task.before.statistics;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        append(tasks[i].before);
+        append(after[i]);
     }
     return cut;
 }

@@ -8,7 +8,7 @@
 // pass: nothing is drawn farther than `tau` from what it stands for. At 1 a pixel holds an ellipse whole.
 #pragma once
 
-#include "preprocess/model_format/point_node.h"
+#include "engine/scene/point_hierarchy.h"
 
 #include <glm/glm.hpp>
 
@@ -18,44 +18,6 @@
 #include <vector>
 
 namespace splice {
-
-/// What a visit reads of a node; half a cache line. Unit-box units.
-struct CutNode {
-    float centre[3];
-    float radius;               // of the sphere
-    float extent;               // half of what it is long, whichever way; infinite for a single surfel
-    float finest;               // the smallest extent in its subtree
-    std::uint32_t first_child;  // below as format::PointNode
-    std::uint32_t first_surfel;
-};
-static_assert(sizeof(CutNode) == 32);
-
-/// What it may read beside.
-struct CutNodeDetail {
-    float normal[3];  // axis of the normal cone
-    std::uint8_t cone_angle;
-    std::uint8_t child_count;
-    bool is_patch;  // stands for a patch, the whole and nothing else
-    std::uint8_t unused;
-};
-static_assert(sizeof(CutNodeDetail) == 16);
-
-/// A model's point tree as the choice reads it.
-struct PointHierarchy {
-    std::vector<CutNode> nodes;  // breadth first
-    std::vector<CutNodeDetail> details;
-    std::vector<std::uint32_t> surfel_counts;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> patches;  // of nodes that are patches: node, patch; ascending
-    float largest_radius = 0;                                      // of the model's surfels
-
-    bool empty() const { return nodes.empty(); }
-};
-
-PointHierarchy point_hierarchy(std::span<const format::PointNode> nodes, std::span<const format::Patch> patches,
-                               float largest_radius);
-
-/// Half of what is projected and compared with tau: what a node is long, whichever way; unit-box units.
-float extent_of(const format::PointNode& node);
 
 /// Where a model is seen from.
 struct CutView {

@@ -61,11 +61,11 @@ class Settler {
                 runs.push_back(run);
                 continue;
             }
-            const auto& nodes = model_->hierarchy().nodes;
+            const auto& first_surfels = model_->hierarchy().first_surfel;
             auto leaf = std::ranges::lower_bound(model_->leaves(), run.first, {},
-                                                 [&](const TreeLeaf& each) { return nodes[each.node].first_surfel; });
+                                                 [&](const TreeLeaf& each) { return first_surfels[each.node]; });
             for (; leaf != model_->leaves().end(); ++leaf) {
-                const std::uint32_t first = nodes[leaf->node].first_surfel;
+                const std::uint32_t first = first_surfels[leaf->node];
                 const std::uint32_t count = model_->hierarchy().surfel_counts[leaf->node];
                 if (first >= run.first + run.count) break;
                 if (!is_there(first, count)) {

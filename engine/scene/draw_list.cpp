@@ -88,7 +88,7 @@ class Culler {
             if (patch.surfel_count == 0) continue;
             const Extent extent = seen_.locate(patch.bounds_min, patch.bounds_max);
             if (extent.containment == Containment::kOutside) continue;
-            const format::Lod& level = level_of(patch, extent.nearest);
+            const format::Lod& level = level_of(patch, extent);
             if (level.index_count == 0) continue;  // a cloud's
             const double pixels = pixels_of(patch, extent.nearest);
             const DrawLoad load = PatchView::load_of_triangles(level, pixels, draws_.two_sided);
@@ -119,9 +119,9 @@ class Culler {
     }
 
     // The coarsest triangles whose error is within tau.
-    const format::Lod& level_of(const format::Patch& patch, double nearest) const {
+    const format::Lod& level_of(const format::Patch& patch, const Extent& extent) const {
         const auto levels = std::span(draws_.model->lods()).subspan(patch.first_lod, patch.lod_count);
-        return levels[seen_.levels_within(levels.subspan(1), options_.tau, nearest)];
+        return levels[seen_.levels_within(levels.subspan(1), options_.tau, extent)];
     }
 
     void visit_node(std::uint32_t index) {
@@ -159,7 +159,7 @@ class Culler {
         if (!draws_.two_sided && seen_.faces_away(patch.cone_axis, patch.cone_cos, patch.bounds_min, patch.bounds_max))
             return;
         if (triangles) {
-            const format::Lod& level = level_of(patch, extent.nearest);
+            const format::Lod& level = level_of(patch, extent);
             draws_.load += PatchView::load_of_triangles(level, pixels_of(patch, extent.nearest), draws_.two_sided);
             append(draws_.triangles, {level.first_index, level.index_count, patch.material, index},
                    options_.merge_patches);
@@ -168,7 +168,7 @@ class Culler {
         if (patch.surfel_count == 0) return;
         draws_.load.splat_pixels += pixels_of(patch, extent.nearest);
         if (cuts()) return;
-        const MergedRange drawn = surfels_of(index, extent.nearest);
+        const MergedRange drawn = surfels_of(index, extent);
         draws_.load.splats += static_cast<double>(drawn.count);
         const double largest = largest_splat(patch.max_surfel_radius + drawn.growth, extent.nearest);
         const bool sprite =
@@ -178,13 +178,13 @@ class Culler {
     }
 
     // The surfels of a patch, or what may stand for them from here.
-    MergedRange surfels_of(std::uint32_t index, double nearest) {
+    MergedRange surfels_of(std::uint32_t index, const Extent& extent) {
         const format::Patch& patch = draws_.model->patches()[index];
         MergedRange drawn{patch.first_surfel, patch.surfel_count, 0};
         for (const std::vector<MergedRange>& level : draws_.model->merged_levels()) {
             const MergedRange& range = level[index];
             if (range.count == 0) continue;
-            if (!seen_.within(static_cast<double>(range.growth), options_.merge_px, nearest)) break;
+            if (!seen_.within(static_cast<double>(range.growth), options_.merge_px, extent)) break;
             drawn = range;
         }
         if (drawn.first == patch.first_surfel) return drawn;

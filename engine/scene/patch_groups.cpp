@@ -29,21 +29,21 @@ class Chooser {
         if (!model_.group_contents()[index].has_levels) return;
         const PatchView::Extent extent = seen_.locate(node.bounds_min, node.bounds_max);
         if (extent.containment == Containment::kOutside) return;
-        if (decide(index, extent.nearest)) return;
+        if (decide(index, extent)) return;
         for (std::uint32_t child = node.first_child; child < node.first_child + node.child_count; ++child)
             visit(child);
     }
 
     // Whether nothing is left to choose below the node.
-    bool decide(std::uint32_t index, double nearest) {
+    bool decide(std::uint32_t index, const PatchView::Extent& extent) {
         const format::OctreeNode& node = model_.octree()[index];
         const auto levels = std::span(model_.lods()).subspan(node.first_lod, node.lod_count);
-        const std::size_t within = seen_.levels_within(levels, options_.tau, nearest);
+        const std::size_t within = seen_.levels_within(levels, options_.tau, extent);
         if (within == 0) return false;
         const format::Lod& level = levels[within - 1];
         const PatchGroupContent& content = model_.group_contents()[index];
         const auto pixels_of = [&](double area) {
-            return area > 0 ? seen_.pixels_of(area, node.bounds_min, node.bounds_max, nearest) : 0;
+            return area > 0 ? seen_.pixels_of(area, node.bounds_min, node.bounds_max, extent.nearest) : 0;
         };
         const DrawLoad load = PatchView::load_of_triangles(
             level, pixels_of(content.triangle_area + content.surfel_area), options_.two_sided);

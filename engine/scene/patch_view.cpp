@@ -30,6 +30,7 @@ PatchView::Extent PatchView::locate(const float (&low)[3], const float (&high)[3
     std::array<int, 5> outside{};
     std::array<int, 5> inside{};
     double nearest = std::numeric_limits<double>::max();
+    glm::dvec2 aside(0);  // |x|, |y| at depth 1
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 p =
             model_to_view_ * glm::dvec4((corner & 1) ? high[0] : low[0], (corner & 2) ? high[1] : low[1],
@@ -44,10 +45,16 @@ PatchView::Extent PatchView::locate(const float (&low)[3], const float (&high)[3
             inside[plane] += beyond[plane] < 0 ? 1 : 0;
         }
         nearest = std::min(nearest, depth);
+        aside = glm::max(aside, glm::abs(glm::dvec2(p)) / std::max(depth, camera_.near_plane));
     }
+    // Projections of the bounds' corners hold that of the bounds, where all is in front of the eye.
+    if (nearest <= camera_.near_plane) aside = {half_x_, half_y_};
+    aside = glm::min(aside, {half_x_, half_y_});
+    const double stretch = camera_.orthographic ? 1 : std::hypot(1.0, aside.x, aside.y);
     const auto all = [](int corners) { return corners == 8; };
-    if (std::any_of(outside.begin(), outside.end(), all)) return {Containment::kOutside, nearest};
-    return {std::all_of(inside.begin(), inside.end(), all) ? Containment::kInside : Containment::kPartly, nearest};
+    if (std::any_of(outside.begin(), outside.end(), all)) return {Containment::kOutside, nearest, stretch};
+    return {std::all_of(inside.begin(), inside.end(), all) ? Containment::kInside : Containment::kPartly, nearest,
+            stretch};
 }
 
 bool PatchView::faces_away(const float (&cone_axis)[3], float cone_cosine, const float (&low)[3],
@@ -71,15 +78,15 @@ bool PatchView::faces_away(const float (&cone_axis)[3], float cone_cosine, const
     return beta + spread + alpha + kRounding < std::acos(-kHorizon);
 }
 
-bool PatchView::within(double length, double pixels, double nearest) const {
-    if (pixels == 0 || (!camera_.orthographic && nearest <= camera_.near_plane)) return false;
-    const double stretch = camera_.orthographic ? 1 : std::hypot(1.0, half_x_, half_y_) / nearest;
-    return length * pixel_scale_ * scale_ * stretch <= pixels;
+bool PatchView::within(double length, double pixels, const Extent& extent) const {
+    if (pixels == 0 || (!camera_.orthographic && extent.nearest <= camera_.near_plane)) return false;
+    const double depth = camera_.orthographic ? 1 : extent.nearest;
+    return length * pixel_scale_ * scale_ * extent.stretch <= pixels * depth;
 }
 
-std::size_t PatchView::levels_within(std::span<const format::Lod> levels, double tau, double nearest) const {
+std::size_t PatchView::levels_within(std::span<const format::Lod> levels, double tau, const Extent& extent) const {
     std::size_t fit = 0;
-    while (fit < levels.size() && within(kWorstOfError * static_cast<double>(levels[fit].error), tau, nearest))
+    while (fit < levels.size() && within(kWorstOfError * static_cast<double>(levels[fit].error), tau, extent))
         ++fit;
     return fit;
 }

@@ -25,6 +25,9 @@ class PatchView {
     struct Extent {
         Containment containment;
         double nearest;  // depth, view space
+        // How many times as long as at the picture's middle a length at one depth may look, wherever in the bounds and
+        // in the picture it is: towards the picture's corners rays are slanted. 1 in parallel projection.
+        double stretch;
     };
 
     /// `scale`: world units a unit-box unit. The camera must outlive the view.
@@ -46,11 +49,11 @@ class PatchView {
     bool faces_away(const float (&cone_axis)[3], float cone_cosine, const float (&low)[3],
                     const float (&high)[3]) const;
 
-    /// Whether a length takes at most so many pixels, whichever way, at this depth.
-    bool within(double length, double pixels, double nearest) const;
+    /// Whether a length takes at most so many pixels, whichever way, wherever in the bounds.
+    bool within(double length, double pixels, const Extent& extent) const;
 
     /// How many of the levels, finer before coarser, are within `tau` pixels wherever in their bounds they are.
-    std::size_t levels_within(std::span<const format::Lod> levels, double tau, double nearest) const;
+    std::size_t levels_within(std::span<const format::Lod> levels, double tau, const Extent& extent) const;
 
     /// Of a surface that is turned every way, half of its area as it is seen face on. 0, a cloud's, is not known: the
     /// mean silhouette of a box is a quarter of its surface.

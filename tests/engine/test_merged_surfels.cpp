@@ -16,6 +16,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace splice;
@@ -178,4 +179,26 @@ TEST_CASE("merged surfels leave no hole and are as true from afar, and near noth
         CAPTURE(of_full, of_fewer);
         CHECK(of_fewer > of_full - 0.75);
     }
+}
+
+TEST_CASE("a wider picture merges as a view from farther away does, and less towards its corner") {
+    Renderer renderer({});
+    const Scene scene = scene_of(renderer.load(view_of(bench::bumpy_sphere(100'000, 2.4))));
+    CaptureSettings settings;
+    settings.width = settings.height = 256;
+    settings.backend = Backend::kTile;
+    const auto seen = [&](double distance, double tangent, const glm::dvec3& aside) {
+        settings.camera = looking_down_z();
+        settings.camera.eye = {0, 0, distance};
+        settings.camera.target = settings.camera.eye + glm::dvec3(0, 0, -1) + aside;
+        settings.camera.fov_y_degrees = glm::degrees(2 * std::atan(tangent));
+        return renderer.render(scene, settings).stats;
+    };
+    const FrameStats near = seen(3, 0.5, {}), far = seen(18, 0.5, {}), wide = seen(3, 3, {}),
+                     corner = seen(3, 3, {1.5, 1.5, 0});
+    CHECK(near.merged.splats == 0);
+    CHECK(far.merged.surfels > 90'000);
+    CHECK(wide.merged.surfels > 60'000);  // parts of it are nearer than its middle by more than from afar
+    CHECK(corner.covered_pixels > wide.covered_pixels);
+    CHECK(corner.merged.surfels < wide.merged.surfels);
 }

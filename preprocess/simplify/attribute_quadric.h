@@ -5,6 +5,7 @@
 
 #include "preprocess/mesh/indexed_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,9 +24,11 @@ class AttributeQuadric {
         add(plane_, area, unit_normal, -unit_normal.dot(point));
     }
 
-    /// What a triangle is: its plane and its attributes as linear functions of the place.
+    /// What a triangle is: its plane and its attributes as linear functions of the place. Across what is thinner than
+    /// `width` they are taken to change less than their values there say: a sliver's attributes differ by noise over no
+    /// distance, and such a slope would prevail a width away.
     void add_triangle(const std::array<Vec3d, 3>& corners, const std::array<Attributes, 3>& attributes,
-                      std::size_t count) {
+                      std::size_t count, double width) {
         const Vec3d a = corners[1] - corners[0], b = corners[2] - corners[0];
         const Vec3d cross = a.cross(b);
         const double length = cross.norm();
@@ -33,12 +36,30 @@ class AttributeQuadric {
         const double area = length / 2;
         add_plane(cross / length, corners[0], area);
         weight_ += area;
-        // Gradients lie in the plane: dual vectors of its edges.
-        const Vec3d across_a = b.cross(cross) / (length * length), across_b = cross.cross(a) / (length * length);
+        // The slope g of least sum of (g.(p - c) - (value - mean))^2 over the corners p, with c their mean, plus
+        // (width |g|)^2: in the plane's own axes, two equations.
+        const Vec3d u = a.normalized(), v = cross.cross(a).normalized(), centre = corners[0] + (a + b) / 3;
+        double uu = width * width, uv = 0, vv = width * width;
+        std::array<double, 3> us{}, vs{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            us[k] = u.dot(corners[k] - centre);
+            vs[k] = v.dot(corners[k] - centre);
+            uu += us[k] * us[k];
+            uv += us[k] * vs[k];
+            vv += vs[k] * vs[k];
+        }
+        const double determinant = uu * vv - uv * uv;
+        if (!(determinant > 0)) return;
         for (std::size_t i = 0; i < count; ++i) {
-            const double first = attributes[0][i];
-            const Vec3d gradient = (attributes[1][i] - first) * across_a + (attributes[2][i] - first) * across_b;
-            const double offset = first - gradient.dot(corners[0]);
+            const double mean = (attributes[0][i] + attributes[1][i] + attributes[2][i]) / 3;
+            double along_u = 0, along_v = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                along_u += us[k] * (attributes[k][i] - mean);
+                along_v += vs[k] * (attributes[k][i] - mean);
+            }
+            const Vec3d gradient =
+                ((vv * along_u - uv * along_v) * u + (uu * along_v - uv * along_u) * v) / determinant;
+            const double offset = mean - gradient.dot(centre);
             add(slope_, area, gradient, offset);
             gradient_[i] += area * gradient;
             offset_[i] += area * offset;

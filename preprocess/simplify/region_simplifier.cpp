@@ -29,6 +29,9 @@ constexpr double kLengthShare = 1e-6;
 // what a vertex stands for. Texture coordinates need only keep from sliding: unit-box units a unit.
 constexpr double kNormalWidths = 0.5, kColourWidths = 0.5, kUvWorth = 0.1;
 
+// Widths across which slopes of attributes are trusted.
+constexpr double kSlope = 0.1;
+
 // An error is a quarter of what may be seen of it (engine/scene/patch_view.cpp): half of the largest distance at least;
 // and the width of what a vertex stands for, times how far its normals differ, though no more than a share of a width,
 // which would be filtered to one normal: where a pixel may be seen, vertices are not kept closer than two.
@@ -161,9 +164,9 @@ void RegionSimplifier::weigh_attributes() {
         const Vec3d& origin = position_[corner_vertex_[corner]];
         area += (position_[after(corner)] - origin).cross(position_[before(corner)] - origin).norm() / 2;
     }
-    const double width = std::sqrt(2 * area / static_cast<double>(std::max<std::size_t>(position_.size(), 1)));
-    normal_worth_ = kNormalWidths * width;
-    colour_worth_ = kColourWidths * width;
+    width_ = std::sqrt(2 * area / static_cast<double>(std::max<std::size_t>(position_.size(), 1)));
+    normal_worth_ = kNormalWidths * width_;
+    colour_worth_ = kColourWidths * width_;
     uv_worth_ = kUvWorth;
 }
 
@@ -190,7 +193,7 @@ void RegionSimplifier::add_quadrics() {
             attributes[k] = attributes_of(vertex_at(corner_render_[corner + k]));
         }
         AttributeQuadric quadric;
-        quadric.add_triangle(places, attributes, attribute_count_);
+        quadric.add_triangle(places, attributes, attribute_count_, kSlope * width_);
         for (Index k = 0; k < 3; ++k)
             quadric_[corner_vertex_[corner + k]] += quadric;
     }
@@ -322,7 +325,7 @@ bool RegionSimplifier::is_legal(Index vertex, Index target) {
 
 // The neighbours that both share are exactly the tips of the triangles on the edge, and no triangle joins the tips to
 // the target already; else the collapse would pinch the surface or fold it onto itself. A locked target keeps its
-// attributes, on which the triangles must agree.
+// texture coordinates, on which the triangles must agree.
 bool RegionSimplifier::link_is_simple(Index vertex, Index target) {
     const Index near = ++current_mark_;
     Index tips[2] = {kNone, kNone}, render[2] = {kNone, kNone};
@@ -342,7 +345,7 @@ bool RegionSimplifier::link_is_simple(Index vertex, Index target) {
     });
     const Index expected = kind_[vertex] == Kind::kBorder ? 1 : 2;
     if (!simple || (tips[0] != kNone ? 1u : 0u) + (tips[1] != kNone ? 1u : 0u) != expected) return false;
-    if (expected == 2 && kind_[target] == Kind::kLocked && render[0] != render[1]) return false;
+    if (expected == 2 && kind_[target] == Kind::kLocked && is_seam(render[0], render[1])) return false;
     const Index seen = ++current_mark_;
     Index common = 0;
     bool folds = false;
@@ -405,8 +408,15 @@ void RegionSimplifier::collapse(Index vertex, Index target) {
         corner_vertex_[corner] = target;
         corner_render_[corner] = render;
     });
-    next_corner_[last] = first_corner_[target];
+    const Index end_of_moved = first_corner_[target];
+    next_corner_[last] = end_of_moved;
     first_corner_[target] = first_corner_[vertex];
+    // Their planes have changed, a sliver's to that of a wide triangle.
+    for (Index moved = first_corner_[vertex]; moved != end_of_moved; moved = next_corner_[moved]) {
+        Index corner = moved;
+        for (int k = 0; alive_[moved / 3] && k < 3; ++k, corner = next_in_triangle(corner))
+            corner_render_[corner] = suiting(corner, corner_render_[corner]);
+    }
     first_corner_[vertex] = kNone;
     ++version_[vertex];
     --free_;
@@ -428,6 +438,24 @@ void RegionSimplifier::collapse(Index vertex, Index target) {
     });
     for (const Index changed : ring_)
         push_candidate(changed);
+}
+
+// A vertex that is not fitted keeps its own attributes, of which it has several at a crease: on scans also at slivers
+// of no width, whose normals are anyone's. A triangle takes those whose normal is nearest to its own.
+std::uint32_t RegionSimplifier::suiting(Index corner, std::uint32_t render) const {
+    const Index vertex = corner_vertex_[corner];
+    const Vec3d plane =
+        (position_[after(corner)] - position_[vertex]).cross(position_[before(corner)] - position_[vertex]);
+    const auto along = [&](std::uint32_t candidate) {
+        const auto normal = decode_octahedral(vertex_at(candidate).normal);
+        return plane.dot(Vec3d(normal[0], normal[1], normal[2]));
+    };
+    std::uint32_t best = render;
+    for_each_corner(vertex, [&](Index other) {
+        const std::uint32_t candidate = corner_render_[other];
+        if (candidate != best && !is_seam(candidate, render) && along(candidate) > along(best)) best = candidate;
+    });
+    return best;
 }
 
 void RegionSimplifier::drop_dead_corners(Index vertex) {

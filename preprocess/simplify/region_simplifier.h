@@ -80,6 +80,7 @@ class RegionSimplifier {
     bool link_is_simple(Index vertex, Index target);
     bool turns_no_triangle(Index vertex, Index target) const;
     void collapse(Index vertex, Index target);
+    std::uint32_t suiting(Index corner, std::uint32_t render) const;
     void drop_dead_corners(Index vertex);
     void measure(RegionLevel& level) const;
     RegionLevel level() const;
@@ -110,6 +111,7 @@ class RegionSimplifier {
 
     std::vector<Index> local_of_position_;  // kNone outside the current part
     std::size_t attribute_count_ = 0;
+    double width_ = 0;                                           // of what a vertex stands for
     double normal_worth_ = 0, colour_worth_ = 0, uv_worth_ = 0;  // as distances
 
     // One entry a corner; corner / 3 is the triangle.

@@ -19,8 +19,8 @@ namespace {
 constexpr const char* kAbout = R"(splice-capture - a picture of a hybrid model, without a window
 
 INPUT is a model file (splice-bake), a scene file (JSON, docs/scene_format.md), a mesh (OBJ, PLY, STL, OFF, SMF) or a point
-cloud (LAS, PCD, PLY, XYZ, PTS, PWN); the last two are baked in memory first. Coordinates are those of the file. By default the
-model is framed as large as it fits.)";
+cloud (LAS, PCD, PLY, XYZ, PTS, PWN); the last two are baked in memory first. Several, but for scenes, share one picture.
+Coordinates are those of the files. By default the model is framed as large as it fits.)";
 
 constexpr const char* kExamples = R"(Examples:
   splice-capture bunny.splice -o bunny.png
@@ -97,9 +97,10 @@ std::string view_help() {
 
 // Options as typed; converted once the parser is done, so that every complaint has the same shape.
 struct RawOptions {
-    std::string input, output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend,
-        show, height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, budget, memory,
-        kernel, points_below, merge;
+    std::vector<std::string> inputs;
+    std::string output, stats, graph, size, eye, target, up, fov, azimuth, elevation, zoom, orbit, view, backend, show,
+        height, background, epsilon_scale, prefilter, antialias, shading, graph_switch, tau, budget, memory, kernel,
+        points_below, merge;
     bool one_sided = false, two_sided = false;
 };
 
@@ -161,7 +162,7 @@ void convert(const RawOptions& raw, CaptureCommand& command) {
     if (raw.one_sided && raw.two_sided) throw UsageError("--one-sided and --two-sided exclude each other");
     if (raw.one_sided) command.sides = Sides::kOneSided;
     if (raw.two_sided) command.sides = Sides::kTwoSided;
-    command.input = raw.input;
+    command.inputs.assign(raw.inputs.begin(), raw.inputs.end());
     command.output = raw.output;
 }
 
@@ -178,7 +179,7 @@ void check_picture_format(const std::filesystem::path& output) {
 
 void check_combination(const CaptureCommand& command) {
     if (command.list_devices) return;
-    if (command.input.empty()) throw UsageError("INPUT is missing (see --help)");
+    if (command.inputs.empty() || command.inputs.front().empty()) throw UsageError("INPUT is missing (see --help)");
     if (command.output.empty()) throw UsageError("-o OUT.png is missing (see --help)");
     check_picture_format(command.output);
     if (command.renderer.graph.pipeline_statistics && !command.stats)
@@ -201,7 +202,8 @@ std::optional<CaptureCommand> parse_capture_command(int argc, const char* const*
     CLI::App app(kAbout, "splice-capture");
     app.footer(kExamples);
     app.set_version_flag("--version", "splice-capture " SPLICE_VERSION);
-    app.add_option("INPUT", raw.input, "MODEL.splice, SCENE.json, a mesh or a point cloud");
+    app.add_option("INPUT", raw.inputs,
+                   "MODEL.splice, a mesh or a point cloud, or several of these; or one SCENE.json");
     app.add_option("-o,--output", raw.output, "The picture, PNG");
     app.add_option("--device", command.renderer.device,
                    "auto: a GPU if there is one, else lavapipe; cpu; or a number of --list-devices")

@@ -8,13 +8,15 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace splice {
 
 /// What the command line says; what it leaves open is the scene's or the default.
 struct CaptureCommand {
     bool list_devices = false;
-    std::filesystem::path input, output;
+    std::vector<std::filesystem::path> inputs;
+    std::filesystem::path output;
     RendererOptions renderer;
     std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  // pixels
     std::optional<glm::dvec3> eye, target, up;                    // world units

@@ -1,5 +1,6 @@
 #include "engine/capture/prepare_scene.h"
 
+#include "engine/capture/bake_of_scene.h"
 #include "preprocess/model_format/error.h"
 
 #include <algorithm>
@@ -40,7 +41,8 @@ void check_model_file(const SceneModel& model, const std::filesystem::path& path
 }
 
 // What makes two models of a scene the same: where they come from and how they are baked.
-using ModelKey = std::tuple<std::string, std::map<std::string, double>, SceneRepresentation, double, double>;
+using ModelKey =
+    std::tuple<std::string, std::map<std::string, double>, SceneRepresentation, SceneSelection, double, double, double>;
 
 class Preparer {
   public:
@@ -53,8 +55,12 @@ class Preparer {
         const auto* path = std::get_if<std::filesystem::path>(&model.source);
         if (path) check_model_file(model, *path, scene_name, place);
         const ModelKey key{shape ? "shape " + shape->kind : "file " + path->string(),
-                           shape ? shape->parameters : std::map<std::string, double>{}, model.representation,
-                           model.triangle_share.value_or(-1), model.max_spacing.value_or(-1)};
+                           shape ? shape->parameters : std::map<std::string, double>{},
+                           model.representation,
+                           model.selection,
+                           model.triangle_share.value_or(-1),
+                           model.sampling.value_or(-1),
+                           model.max_spacing.value_or(-1)};
         auto& entry = models_[key];
         if (!entry) entry = shape ? bake_shape(model, *shape, scene_name, place + "/shape") : read_file(model, *path);
         return entry;
@@ -62,25 +68,8 @@ class Preparer {
 
   private:
     BakeOptions bake_options(const SceneModel& model) const {
-        BakeOptions options = options_.bake.value_or(BakeOptions{});
+        BakeOptions options = options_.bake.value_or(bake_of(model));
         options.threads = options_.threads;
-        if (options_.bake) return options;
-        switch (model.representation) {
-            case SceneRepresentation::kHybrid:
-                options.cluster.representation = ForcedRepresentation::kHybrid;
-                break;
-            case SceneRepresentation::kTriangles:
-                options.cluster.representation = ForcedRepresentation::kTriangles;
-                break;
-            case SceneRepresentation::kSurfels:
-                options.cluster.representation = ForcedRepresentation::kSurfels;
-                break;
-        }
-        options.cluster.triangle_share = model.triangle_share;
-        if (model.max_spacing) {
-            options.sampling.h_max = *model.max_spacing;
-            options.sampling.h_min = std::min(options.sampling.h_min, *model.max_spacing);
-        }
         return options;
     }
 
@@ -144,6 +133,7 @@ PreparedScene prepare_scene(const std::vector<std::filesystem::path>& paths, con
         if (kind_of_file(path) == FileKind::kScene) {
             if (paths.size() > 1) throw UsageError(path.string() + ": a scene file is opened alone, not beside others");
             prepared.description = read_scene_file(path);
+            prepared.from_scene_file = true;
         } else {
             SceneModel model;
             model.source = path;
@@ -152,9 +142,11 @@ PreparedScene prepare_scene(const std::vector<std::filesystem::path>& paths, con
     }
     Preparer preparer(options, progress, prepared);
     const std::string name = paths.size() == 1 ? paths.front().string() : "";
-    for (std::size_t i = 0; i < prepared.description.models.size(); ++i)
-        prepared.models.push_back(
-            preparer.prepare(prepared.description.models[i], name, "/models/" + std::to_string(i)));
+    for (std::size_t i = 0; i < prepared.description.models.size(); ++i) {
+        SceneModel& model = prepared.description.models[i];
+        prepared.models.push_back(preparer.prepare(model, name, "/models/" + std::to_string(i)));
+        if (options.bake && prepared.models.back()->baked()) describe_bake(*options.bake, model);
+    }
     return prepared;
 }
 

@@ -36,7 +36,8 @@ class HostModel {
 };
 
 struct PreparedScene {
-    SceneDescription description;                          // of models and meshes: default lights, default framing
+    SceneDescription description;  // of models and meshes: default lights, default framing; says how they were baked
+    bool from_scene_file = false;
     std::vector<std::shared_ptr<const HostModel>> models;  // one an entry of description.models; equal ones are one
     std::vector<std::string> warnings;
     std::vector<std::filesystem::path> companions;  // files that were read because a mesh names them

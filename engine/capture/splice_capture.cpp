@@ -3,6 +3,7 @@
 #include "engine/capture/camera_path.h"
 #include "engine/capture/capture_command_line.h"
 #include "engine/capture/load_scene.h"
+#include "engine/capture/look_settings.h"
 #include "engine/capture/png_file.h"
 #include "engine/capture/stats_json.h"
 #include "preprocess/build_model/counted.h"
@@ -21,9 +22,9 @@ using namespace splice;
 
 LoadedScene load(const CaptureCommand& command, Renderer& renderer) {
     StageDisplay display(command.quiet);
-    LoadedScene loaded = load_scene(
-        command.input, renderer, [&](std::string_view stage, double fraction) { display.update(stage, fraction); },
-        command.memory);
+    const PreparedScene prepared = prepare_scene(
+        command.inputs, {}, [&](std::string_view stage, double fraction) { display.update(stage, fraction); });
+    LoadedScene loaded = upload_scene(prepared, renderer, command.memory);
     display.finish();
     if (!command.quiet)
         for (const std::string& warning : loaded.warnings)
@@ -36,18 +37,20 @@ CaptureSettings settings_of(const CaptureCommand& command, const SceneDescriptio
     CaptureSettings settings;
     settings.width = command.size ? command.size->first : scene.width;
     settings.height = command.size ? command.size->second : scene.height;
-    settings.view = command.view.value_or(scene.view);
+    apply_look(scene.look, settings);
+    settings.view = command.view.value_or(settings.view);
     settings.shown = command.shown.value_or(settings.shown);
-    settings.backend = command.backend.value_or(Backend::kAuto);
+    settings.backend = command.backend.value_or(settings.backend);
     settings.points_below = command.points_below;
     settings.merge_px = command.merge_px.value_or(settings.merge_px);
-    settings.sides = command.sides.value_or(scene.sides);
-    settings.epsilon_scale = command.epsilon_scale.value_or(scene.epsilon_scale);
-    settings.prefilter = command.prefilter.value_or(scene.prefilter);
-    settings.shading = command.shading.value_or(scene.shading);
-    settings.antialias = command.antialias.value_or(scene.antialias);
-    settings.kernel = command.kernel.value_or(scene.kernel);
-    settings.tau = command.tau.value_or(scene.tau);
+    settings.sides = command.sides.value_or(settings.sides);
+    settings.epsilon_scale = command.epsilon_scale.value_or(settings.epsilon_scale);
+    settings.prefilter = command.prefilter.value_or(settings.prefilter);
+    settings.shading = command.shading.value_or(settings.shading);
+    settings.antialias = command.antialias.value_or(settings.antialias);
+    settings.kernel = command.kernel.value_or(settings.kernel);
+    settings.tau = command.tau.value_or(settings.tau);
+    settings.cut_camera = scene.levels_from;
     settings.budget_ms = command.budget_ms;
     settings.want_overlap = command.stats.has_value();
     if (command.graph) settings.want_graph = graph::export_format_of(command.graph->string());
@@ -68,8 +71,11 @@ std::filesystem::path picture_path(const CaptureCommand& command, std::size_t in
 // `companions`: materials and textures that meshes name, known once they are read.
 void check_files(const CaptureCommand& command, const std::vector<std::filesystem::path>& companions = {}) {
     std::vector<NamedFile> inputs, outputs;
-    for (const std::filesystem::path& file : files_of_scene(command.input))
-        inputs.push_back({inputs.empty() ? "INPUT" : "the scene's model", file});
+    for (const std::filesystem::path& input : command.inputs) {
+        const std::vector<std::filesystem::path> files = files_of_scene(input);
+        for (std::size_t i = 0; i < files.size(); ++i)
+            inputs.push_back({i == 0 ? "INPUT" : "the scene's model", files[i]});
+    }
     for (const std::filesystem::path& companion : companions)
         inputs.push_back({"a mesh's material or texture", companion});
     for (std::size_t i = 0; i < std::max(command.orbit, 1U); ++i)

@@ -34,6 +34,7 @@ struct Light {
     glm::dvec3 position{0.0};               // point
     double range = 1;                       // point: distance at half strength, world units
     glm::dvec3 colour{1.0};                 // linear, may exceed 1
+    friend bool operator==(const Light&, const Light&) = default;
 };
 
 /// What a highlight measures: the angle between the normal and the half vector (Blinn 1977), or between the mirrored
@@ -49,6 +50,7 @@ struct Lighting {
     HighlightModel highlight = HighlightModel::kBlinnPhong;
     double rim = 0;           // white added as rim (1 - n.v)^rim_exponent, whatever the lights; 0 turns it off
     double rim_exponent = 3;  // >= 1
+    friend bool operator==(const Lighting&, const Lighting&) = default;
 };
 
 /// The lights that are used unless a scene names its own: one directional light over the viewer's left shoulder.

@@ -75,8 +75,15 @@ ShapeDescription read_shape(const JsonValue& value) {
     return shape;
 }
 
+std::optional<double> read_sampling(const JsonValue& value) {
+    if (value.is_string() && value.string() == "adaptive") return std::nullopt;
+    if (!value.is_number()) value.fail("\"adaptive\" or a number from 0.1 to 64");
+    return value.number(0.1, 64, "\"adaptive\" or a number from 0.1 to 64");
+}
+
 SceneModel read_model(const JsonValue& value, const std::filesystem::path& folder) {
-    value.expect_members({"file", "shape", "transform", "unit_box", "representation", "triangle_share", "max_spacing"});
+    value.expect_members({"file", "shape", "transform", "unit_box", "representation", "selection", "triangle_share",
+                          "sampling", "max_spacing"});
     SceneModel model;
     const auto file = value.member("file"), shape = value.member("shape");
     if (file.has_value() == shape.has_value()) value.fail("an object with either \"file\" or \"shape\"");
@@ -94,13 +101,17 @@ SceneModel read_model(const JsonValue& value, const std::filesystem::path& folde
             choice(*representation, Names<SceneRepresentation, 3>{{{SceneRepresentation::kHybrid, "hybrid"},
                                                                    {SceneRepresentation::kTriangles, "triangles"},
                                                                    {SceneRepresentation::kSurfels, "surfels"}}});
+    if (const auto selection = value.member("selection"))
+        model.selection = choice(*selection, Names<SceneSelection, 2>{{{SceneSelection::kGeometric, "geometric"},
+                                                                       {SceneSelection::kThesis, "thesis"}}});
+    if (const auto sampling = value.member("sampling")) model.sampling = read_sampling(*sampling);
     if (const auto share = value.member("triangle_share"))
         model.triangle_share = share->number(0, 1, "a number from 0 to 1");
     if (const auto spacing = value.member("max_spacing"))
         model.max_spacing = spacing->number(1e-4, 1, "a number from 0.0001 to 1");
     if (model.triangle_share && model.representation != SceneRepresentation::kHybrid)
         value.member("triangle_share")->fail("\"representation\": \"hybrid\" beside it");
-    for (const char* name : {"representation", "triangle_share", "max_spacing"})
+    for (const char* name : {"representation", "selection", "triangle_share", "sampling", "max_spacing"})
         if (value.member(name)) model.bake_members.emplace_back(name);
     return model;
 }
@@ -136,6 +147,13 @@ void read_camera(const JsonValue& value, SceneDescription& scene) {
     if (const auto zoom = value.member("zoom")) scene.framing.zoom = zoom->number(1e-6, 1e6, "a positive number");
 }
 
+Camera read_placed_camera(const JsonValue& value) {
+    SceneDescription placed;
+    read_camera(value, placed);
+    if (!placed.camera) value.fail("a camera with eye and target");
+    return *placed.camera;
+}
+
 std::vector<CameraBookmark> read_bookmarks(const JsonValue& value) {
     std::vector<CameraBookmark> bookmarks;
     const std::size_t count = value.array_size(0);
@@ -146,11 +164,7 @@ std::vector<CameraBookmark> read_bookmarks(const JsonValue& value) {
         const bool known = std::any_of(bookmarks.begin(), bookmarks.end(),
                                        [&](const CameraBookmark& other) { return other.name == name; });
         if (name.empty() || known) element.required("name").fail("a name that no bookmark before has");
-        const JsonValue camera = element.required("camera");
-        SceneDescription placed;
-        read_camera(camera, placed);
-        if (!placed.camera) camera.fail("a camera with eye and target");
-        bookmarks.push_back({name, *placed.camera});
+        bookmarks.push_back({name, read_placed_camera(element.required("camera"))});
     }
     return bookmarks;
 }
@@ -212,33 +226,56 @@ Background read_background(const JsonValue& value) {
     return background;
 }
 
+// Members that are not there leave what `look` has.
+void read_look(const JsonValue& value, SceneLook& look) {
+    if (const auto view = value.member("view")) {
+        const auto known = find_named(kViewNames, view->is_string() ? view->string() : "");
+        if (!known) view->fail("the name of a view, such as \"shaded\"");
+        look.view = *known;
+    }
+    if (const auto shown = value.member("show")) look.shown = choice(*shown, kShownNames);
+    if (const auto backend = value.member("backend")) look.backend = choice(*backend, kBackendNames);
+    if (const auto sides = value.member("sides")) look.sides = choice(*sides, kSidesNames);
+    if (const auto epsilon = value.member("epsilon_scale"))
+        look.epsilon_scale = epsilon->number(0, 100, "a number from 0 to 100");
+    if (const auto prefilter = value.member("prefilter")) look.prefilter = prefilter->boolean();
+    if (const auto shading = value.member("shading")) look.shading = choice(*shading, kShadingNames);
+    if (const auto antialias = value.member("antialias"))
+        look.antialias = antialias->whole_number(1, kMostSamplesPerSide);
+    if (const auto merge = value.member("merge"))
+        look.merge_px = merge->number(0, kMostMergePixels, "a number from 0 to 64");
+    if (const auto tau = value.member("tau")) look.tau = tau->number(0, kMostTau, "a number from 0 to 1000");
+    if (const auto kernel = value.member("kernel")) {
+        const auto known = parse_kernel(kernel->is_string() ? kernel->string() : "");
+        if (!known) kernel->fail("a kernel, such as \"gaussian:0.5\", \"confetti:6,1.5,3\", \"constant\" or \"disk\"");
+        look.kernel = *known;
+    }
+}
+
 void read_render(const JsonValue& value, SceneDescription& scene) {
-    value.expect_members(
-        {"size", "view", "sides", "epsilon_scale", "prefilter", "antialias", "shading", "tau", "kernel"});
+    value.expect_members({"size", "view", "show", "backend", "sides", "epsilon_scale", "prefilter", "antialias",
+                          "shading", "merge", "tau", "kernel", "levels_from"});
     constexpr std::uint32_t kLargestSide = 1u << 16;
     if (const auto size = value.member("size")) {
         size->array_size(2, 2);
         scene.width = size->element(0).whole_number(1, kLargestSide);
         scene.height = size->element(1).whole_number(1, kLargestSide);
     }
-    if (const auto view = value.member("view")) {
-        const auto known = find_named(kViewNames, view->is_string() ? view->string() : "");
-        if (!known) view->fail("the name of a view, such as \"shaded\"");
-        scene.view = *known;
+    read_look(value, scene.look);
+    if (const auto camera = value.member("levels_from")) scene.levels_from = read_placed_camera(*camera);
+}
+
+SceneComparison read_comparison(const JsonValue& value, const SceneLook& left) {
+    value.expect_members({"kind", "wipe", "right"});
+    SceneComparison comparison{.right = left};
+    comparison.kind = choice(value.required("kind"), kComparisonNames);
+    if (const auto wipe = value.member("wipe")) comparison.wipe = wipe->number(0, 1, "a number from 0 to 1");
+    if (const auto right = value.member("right")) {
+        right->expect_members({"view", "show", "backend", "sides", "epsilon_scale", "prefilter", "antialias", "shading",
+                               "merge", "tau", "kernel"});
+        read_look(*right, comparison.right);
     }
-    if (const auto sides = value.member("sides")) scene.sides = choice(*sides, kSidesNames);
-    if (const auto epsilon = value.member("epsilon_scale"))
-        scene.epsilon_scale = epsilon->number(0, 100, "a number from 0 to 100");
-    if (const auto prefilter = value.member("prefilter")) scene.prefilter = prefilter->boolean();
-    if (const auto shading = value.member("shading")) scene.shading = choice(*shading, kShadingNames);
-    if (const auto antialias = value.member("antialias"))
-        scene.antialias = antialias->whole_number(1, kMostSamplesPerSide);
-    if (const auto tau = value.member("tau")) scene.tau = tau->number(0, kMostTau, "a number from 0 to 1000");
-    if (const auto kernel = value.member("kernel")) {
-        const auto known = parse_kernel(kernel->is_string() ? kernel->string() : "");
-        if (!known) kernel->fail("a kernel, such as \"gaussian:0.5\", \"confetti:6,1.5,3\", \"constant\" or \"disk\"");
-        scene.kernel = *known;
-    }
+    return comparison;
 }
 
 std::string place_of(std::string_view text, std::size_t byte) {
@@ -300,7 +337,7 @@ std::optional<glm::dvec3> parse_colour(std::string_view text) {
 SceneDescription parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder) {
     const nlohmann::json json = parse_json(text, name);
     const JsonValue root(json, name);
-    root.expect_members({"models", "camera", "lighting", "background", "render", "bookmarks"});
+    root.expect_members({"models", "camera", "lighting", "background", "render", "comparison", "bookmarks"});
     SceneDescription scene;
     const JsonValue models = root.required("models");
     const std::size_t count = models.array_size(1);
@@ -310,6 +347,7 @@ SceneDescription parse_scene(std::string_view text, const std::string& name, con
     if (const auto lighting = root.member("lighting")) scene.lighting = read_lighting(*lighting);
     if (const auto background = root.member("background")) scene.background = read_background(*background);
     if (const auto render = root.member("render")) read_render(*render, scene);
+    if (const auto comparison = root.member("comparison")) scene.comparison = read_comparison(*comparison, scene.look);
     if (const auto bookmarks = root.member("bookmarks")) scene.bookmarks = read_bookmarks(*bookmarks);
     return scene;
 }

@@ -3,11 +3,8 @@
 #pragma once
 
 #include "engine/scene/camera.h"
-#include "engine/scene/draw_list.h"
-#include "engine/scene/kernel.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/shading.h"
-#include "engine/scene/view.h"
+#include "engine/scene/scene_look.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -31,16 +28,21 @@ struct ShapeDescription {
     std::map<std::string, double> parameters;  // those that the file gives
 };
 
+// How meshes and shapes are baked on loading, as splice-bake's options of these names.
 enum class SceneRepresentation { kHybrid, kTriangles, kSurfels };
+enum class SceneSelection { kGeometric, kThesis };
 
 struct SceneModel {
     std::variant<std::filesystem::path, ShapeDescription> source;  // paths are resolved against the scene file's folder
     Transform transform;
     bool unit_box = false;  // first moved and scaled so that its bounding box is centred and its longest side is 1
-    SceneRepresentation representation = SceneRepresentation::kHybrid;  // of meshes and shapes, baked on loading
-    std::optional<double> triangle_share;                               // the same
-    std::optional<double> max_spacing;                                  // the same: of surfels, unit-box units
-    std::vector<std::string> bake_members;  // those of the last three that the file gives, by name
+    // Of meshes and shapes, baked on loading.
+    SceneRepresentation representation = SceneRepresentation::kHybrid;
+    SceneSelection selection = SceneSelection::kGeometric;
+    std::optional<double> triangle_share;
+    std::optional<double> sampling;         // the published spacing's c; none: adaptive
+    std::optional<double> max_spacing;      // of surfels, unit-box units
+    std::vector<std::string> bake_members;  // those of the last five that the file gives, by name
 };
 
 /// A place to come back to.
@@ -57,14 +59,9 @@ struct SceneDescription {
     Background background;
     std::vector<CameraBookmark> bookmarks;
     std::uint32_t width = 512, height = 512;
-    View view = View::kShaded;
-    Sides sides = Sides::kAsBaked;
-    double epsilon_scale = 1;
-    bool prefilter = true;
-    std::uint32_t antialias = 1;
-    Shading shading = Shading::kSurfel;
-    double tau = 0;  // pixels, 0 to kMostTau; see lod_cut.h
-    Kernel kernel = {};
+    SceneLook look;
+    SceneComparison comparison;
+    std::optional<Camera> levels_from;  // from where levels of detail are chosen, else from the camera
 };
 
 /// Throws InputError("FILE: /path/of/value: expected ..., got ..."), SystemError.
@@ -73,7 +70,8 @@ SceneDescription read_scene_file(const std::filesystem::path& path);
 /// The same from text; `name` is for messages, `folder` is where relative paths start.
 SceneDescription parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& folder);
 
-/// The scene as a file whose folder is `folder`: reading it gives the same description, numbers exact.
+/// The scene as a file whose folder is `folder`: reading it gives the same description, numbers exact (rotations to
+/// 1e-12).
 std::string write_scene(const SceneDescription& scene, const std::filesystem::path& folder);
 
 /// "#rgb", "#rrggbb", or a name out of white, black, grey, red, green, blue, sky: sRGB-encoded, 0..1.

@@ -54,8 +54,11 @@ Json json_of(const SceneModel& model, const std::filesystem::path& folder) {
     if (const Json transform = json_of(model.transform); !transform.empty()) json["transform"] = transform;
     if (model.unit_box) json["unit_box"] = true;
     constexpr const char* representations[] = {"hybrid", "triangles", "surfels"};
+    constexpr const char* selections[] = {"geometric", "thesis"};
     for (const std::string& member : model.bake_members) {
         if (member == "representation") json[member] = representations[static_cast<int>(model.representation)];
+        if (member == "selection") json[member] = selections[static_cast<int>(model.selection)];
+        if (member == "sampling") json[member] = model.sampling ? Json(*model.sampling) : Json("adaptive");
         if (member == "triangle_share" && model.triangle_share) json[member] = *model.triangle_share;
         if (member == "max_spacing" && model.max_spacing) json[member] = *model.max_spacing;
     }
@@ -98,10 +101,27 @@ Json json_of(const Light& light) {
 Json json_of(const Lighting& lighting) {
     Json json{{"ambient", json_of(lighting.ambient)}, {"specular", lighting.specular}};
     json["shininess"] = lighting.shininess;
+    json["highlight"] = lighting.highlight == HighlightModel::kPhong ? "phong" : "blinn-phong";
+    json["rim"] = lighting.rim;
+    json["rim_exponent"] = lighting.rim_exponent;
     json["lights"] = Json::array();
     for (const Light& light : lighting.lights)
         json["lights"].push_back(json_of(light));
     return json;
+}
+
+Json json_of(const SceneLook& look) {
+    return {{"view", name_of(look.view)},
+            {"show", name_of(look.shown)},
+            {"backend", name_of(look.backend)},
+            {"sides", name_of(look.sides)},
+            {"epsilon_scale", look.epsilon_scale},
+            {"prefilter", look.prefilter},
+            {"antialias", look.antialias},
+            {"shading", name_of(look.shading)},
+            {"merge", look.merge_px},
+            {"tau", look.tau},
+            {"kernel", text_of(look.kernel)}};
 }
 
 std::string text_of(const Background& background) {
@@ -122,11 +142,13 @@ std::string write_scene(const SceneDescription& scene, const std::filesystem::pa
     json["camera"] = scene.camera ? json_of(*scene.camera) : json_of(scene.framing);
     json["lighting"] = json_of(scene.lighting);
     json["background"] = text_of(scene.background);
-    json["render"] = {{"size", {scene.width, scene.height}}, {"view", name_of(scene.view)},
-                      {"sides", name_of(scene.sides)},       {"epsilon_scale", scene.epsilon_scale},
-                      {"prefilter", scene.prefilter},        {"shading", name_of(scene.shading)},
-                      {"antialias", scene.antialias},        {"tau", scene.tau},
-                      {"kernel", text_of(scene.kernel)}};
+    json["render"] = json_of(scene.look);
+    json["render"]["size"] = {scene.width, scene.height};
+    if (scene.levels_from) json["render"]["levels_from"] = json_of(*scene.levels_from);
+    if (scene.comparison.kind != Comparison::kOff)
+        json["comparison"] = {{"kind", name_in(kComparisonNames, scene.comparison.kind)},
+                              {"wipe", scene.comparison.wipe},
+                              {"right", json_of(scene.comparison.right)}};
     for (const CameraBookmark& bookmark : scene.bookmarks)
         json["bookmarks"].push_back({{"name", bookmark.name}, {"camera", json_of(bookmark.camera)}});
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

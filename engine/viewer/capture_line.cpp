@@ -36,11 +36,13 @@ std::string hex(const glm::dvec3& colour) {
 
 }  // namespace
 
-std::string capture_line(const std::filesystem::path& input, const CaptureSettings& settings,
+std::string capture_line(const std::vector<std::filesystem::path>& inputs, const CaptureSettings& settings,
                          const Background& background) {
     const Camera& camera = settings.camera;
-    std::string line = "splice-capture " + quoted(input.string()) + " -o capture.png --size " +
-                       std::to_string(settings.width) + "x" + std::to_string(settings.height);
+    std::string line = "splice-capture";
+    for (const std::filesystem::path& input : inputs)
+        line += " " + quoted(input.string());
+    line += " -o capture.png --size " + std::to_string(settings.width) + "x" + std::to_string(settings.height);
     line += " --eye=" + exact(camera.eye) + " --target=" + exact(camera.target) + " --up=" + exact(camera.up);
     if (camera.orthographic) {
         line += " --orthographic --height " + exact(camera.orthographic_height);
@@ -51,9 +53,10 @@ std::string capture_line(const std::filesystem::path& input, const CaptureSettin
     line += " --backend " + std::string(name_of(settings.backend));
     line += " --shading " + std::string(name_of(settings.shading));
     line += " --antialias " + std::to_string(settings.antialias);
-    if (settings.tau > 0) line += " --tau " + exact(settings.tau);
-    if (settings.kernel != Kernel{}) line += " --kernel " + text_of(settings.kernel);
-    if (settings.shown != Shown::kHybrid) line += " --show " + std::string(name_of(settings.shown));
+    line += " --merge " + exact(settings.merge_px);
+    line += " --tau " + exact(settings.tau);
+    line += " --kernel " + text_of(settings.kernel);
+    line += " --show " + std::string(name_of(settings.shown));
     line += " --background " + quoted(background.transparent ? "transparent" : hex(background.colour));
     if (settings.sides == Sides::kOneSided) line += " --one-sided";
     if (settings.sides == Sides::kTwoSided) line += " --two-sided";

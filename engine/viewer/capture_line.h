@@ -5,11 +5,12 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace splice {
 
-/// One line, quoted for a shell; the same pixels, provided that the scene's file says the same lights.
-std::string capture_line(const std::filesystem::path& input, const CaptureSettings& settings,
+/// One line, quoted for a shell: the same pixels, if the files say the rest (lights, how meshes are baked).
+std::string capture_line(const std::vector<std::filesystem::path>& inputs, const CaptureSettings& settings,
                          const Background& background);
 
 }  // namespace splice

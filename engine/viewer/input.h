@@ -1,6 +1,7 @@
 // What a hand did: the one form in which real input and scripts reach the viewer.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <filesystem>
 #include <vector>
@@ -9,6 +10,9 @@ namespace splice {
 
 /// Numbers of GLFW.
 enum class Button : int { kLeft = 0, kRight = 1, kMiddle = 2 };
+
+/// The keypad's digits, GLFW's numbers, too.
+inline constexpr int kKeypad0 = 320, kKeypad9 = 329;
 
 enum Modifiers : int { kShift = 1, kControl = 2, kAlt = 4 };
 
@@ -23,6 +27,7 @@ struct InputEvent {
     bool repeated = false;
     int modifiers = 0;                         // Modifiers
     std::vector<std::filesystem::path> files;  // dropped
+    std::size_t line = 0;                      // of the script; 0: not a script's
 };
 
 using InputQueue = std::deque<InputEvent>;

@@ -107,7 +107,8 @@ bool Navigation::key(const InputEvent& event, const PictureArea& area, CameraCon
     }
     if (!event.pressed) return false;
     const bool opposite = (event.modifiers & kControl) != 0;
-    switch (event.code) {
+    const bool keypad = event.code >= kKeypad0 && event.code <= kKeypad9;
+    switch (keypad ? '0' + (event.code - kKeypad0) : event.code) {
         case 'F':
             camera.frame_all(area.size);
             return true;

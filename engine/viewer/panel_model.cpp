@@ -22,9 +22,10 @@ void edit_bake(PanelContext& context) {
         int selection = by_share ? 2 : static_cast<int>(bake.cluster.selection);
         ImGui::Combo("Select", &selection, "by roughness\0as published\0by share\0");
         if (selection == 2) {
-            auto share = static_cast<float>(bake.cluster.triangle_share.value_or(0.19));
-            ImGui::SliderFloat("Triangles", &share, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
-            bake.cluster.triangle_share = share;
+            if (!bake.cluster.triangle_share) bake.cluster.triangle_share = 0.19;
+            auto share = static_cast<float>(*bake.cluster.triangle_share);
+            if (ImGui::SliderFloat("Triangles", &share, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
+                bake.cluster.triangle_share = share;
             bake.cluster.selection = Selection::kGeometric;
         } else {
             bake.cluster.triangle_share.reset();
@@ -37,9 +38,10 @@ void edit_bake(PanelContext& context) {
         int sampling = bake.sampling.thesis_c ? 1 : 0;
         ImGui::Combo("Sampling", &sampling, "adaptive\0as published\0");
         if (sampling == 1) {
-            auto c = static_cast<float>(bake.sampling.thesis_c.value_or(1));
-            ImGui::SliderFloat("Density", &c, 0.25F, 4, "%.2f", ImGuiSliderFlags_AlwaysClamp);
-            bake.sampling.thesis_c = c;
+            if (!bake.sampling.thesis_c) bake.sampling.thesis_c = 1;
+            auto c = static_cast<float>(*bake.sampling.thesis_c);
+            if (ImGui::SliderFloat("Density", &c, 0.25F, 4, "%.2f", ImGuiSliderFlags_AlwaysClamp))
+                bake.sampling.thesis_c = c;
         } else {
             bake.sampling.thesis_c.reset();
             // As a count along the longest side: 1 / h_max.
@@ -155,13 +157,13 @@ void draw_file_section(PanelContext& context) {
     const auto button = [&](const char* label, const Command& command) {
         if (ImGui::Button(label)) context.commands.push_back(command);
     };
-    button("Screenshot (P)", {"screenshot", {"splice-view.png"}});
+    button("Screenshot (P)", {"screenshot", {}});
     ImGui::SameLine();
-    button("of the window", {"screenshot-window", {"splice-view-window.png"}});
-    button("Turntable of 36", {"turntable", {"36", "splice-view-turn.png"}});
+    button("of the window", {"screenshot-window", {}});
+    button("Turntable of 36", {"turntable", {"36"}});
     ImGui::SameLine();
-    button("Save scene", {"save-scene", {"splice-view.json"}});
-    ImGui::TextDisabled("files go to the folder it was started in");
+    button("Save scene", {"save-scene", {}});
+    ImGui::TextDisabled("new files in the folder it was started in");
     ImGui::Separator();
     button("Bookmark this view",
            {"bookmark", {"view " + std::to_string(state.scene->loaded.description.bookmarks.size() + 1)}});

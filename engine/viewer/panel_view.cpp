@@ -1,4 +1,5 @@
 // Sections of the side panel: what is shown and how.
+#include "engine/viewer/added_light.h"
 #include "engine/viewer/panels.h"
 
 #include <glm/gtc/type_ptr.hpp>
@@ -108,6 +109,9 @@ void draw_view_section(PanelContext& context) {
     if (ImGui::SliderInt("Antialias", &samples, 1, static_cast<int>(kMostSamplesPerSide), "%d per side"))
         look.antialias = static_cast<std::uint32_t>(std::clamp(samples, 1, static_cast<int>(kMostSamplesPerSide)));
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Samples along each side of a pixel; one while the camera moves");
+    edit_number("Merge", look.merge_px, 0, 8, "%.1f px");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("How far fewer, merged surfels may move any of those they stand for; 0: every surfel");
     edit_number("Tau", look.tau, 0, 8, "%.1f px");
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("How long an ellipse may be that stands for many surfels; 0: full detail");
@@ -118,13 +122,23 @@ void draw_view_section(PanelContext& context) {
     if (state.reduce_while_moving) {
         edit_number("Budget", state.moving_budget_ms, 5, 200, "%.0f ms");
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("What a frame may take while the camera moves");
+        edit_number("Most tau", state.moving_most_tau, 0, static_cast<float>(MovingDetail::kCoarsest), "%.0f px moving");
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("How coarse levels of detail may grow while the camera moves, where half the pixels a\n"
+                              "side take longer than the budget; 0: they stay as at rest");
     }
     if (!state.scene) return;
     Background& background = state.scene->loaded.scene.background;
+    bool changed = ImGui::Checkbox("Transparent", &background.transparent);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Alpha of screenshots is coverage");
+    ImGui::BeginDisabled(background.transparent);
     if (edit_colour("Background", background.colour, ImGuiColorEditFlags_Uint8)) {
-        background.transparent = false;
-        ++state.scene_revision;
+        // What scene files and command lines can say.
+        background.colour = glm::round(background.colour * 255.0) / 255.0;
+        changed = true;
     }
+    ImGui::EndDisabled();
+    if (changed) ++state.scene_revision;
 }
 
 void draw_camera_section(PanelContext& context) {
@@ -176,7 +190,7 @@ void draw_light_section(PanelContext& context) {
     }
     ImGui::Separator();
     if (ImGui::Button("Add a light")) {
-        lighting.lights.push_back(default_lighting().lights.front());
+        lighting.lights.push_back(added_light(lighting, state.camera.camera()));
         changed = true;
     }
     if (changed) ++state.scene_revision;

@@ -22,16 +22,17 @@ double MovingDetail::share() const {
     return kShares[static_cast<std::size_t>(step_)];
 }
 
-void MovingDetail::took(double ms, double target_ms) {
+void MovingDetail::took(double ms, double target_ms, double most_tau) {
+    tau_ = std::min(tau_, most_tau);
     const double last_ms = std::exchange(last_ms_, ms);
     if (ms > target_ms) {
         fast_frames_ = 0;
         if (step_ < kLast) {
             ++step_;
-        } else if (last_ms > target_ms) {
+        } else if (last_ms > target_ms && most_tau > 0) {
             // What is drawn goes with the square of tau, and with part of the time.
             const double factor = std::clamp(std::min(ms, last_ms) / target_ms, 1.1, kMostCoarser);
-            tau_ = tau_ == 0 ? kFinest : std::min(tau_ * factor, kCoarsest);
+            tau_ = std::min(tau_ == 0 ? kFinest : tau_ * factor, std::min(most_tau, kCoarsest));
         }
         return;
     }

@@ -16,7 +16,8 @@ class MovingDetail {
     /// What a frame of the present detail took. Coarser at once, fewer pixels first, though levels of detail only where
     /// the frame before was slow, too: one may have waited for a shader. Finer only after several fast frames, levels
     /// of detail first.
-    void took(double ms, double target_ms = kTargetMs);
+    /// `most_tau` bounds tau: 0 holds levels of detail, and only pixels become fewer.
+    void took(double ms, double target_ms = kTargetMs, double most_tau = kCoarsest);
 
     static constexpr double kCoarsest = 32;
 

@@ -44,8 +44,11 @@ void SceneJob::run() {
     } catch (const std::exception& error) {
         outcome.error = error.what();
     }
-    const std::scoped_lock lock(mutex_);
-    outcome_ = std::move(outcome);
+    {
+        const std::scoped_lock lock(mutex_);
+        outcome_ = std::move(outcome);
+    }
+    ended_ = true;
 }
 
 }  // namespace splice

@@ -4,6 +4,7 @@
 #include "engine/capture/prepare_scene.h"
 
 #include <atomic>
+#include <cstddef>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -17,6 +18,7 @@ struct SceneRequest {
     std::vector<std::filesystem::path> paths;
     PrepareOptions options;
     bool keep_camera = false;  // the same scene, baked in another way
+    std::size_t line = 0;      // of the script that asked for it; 0: none
 };
 
 class SceneJob {
@@ -34,8 +36,13 @@ class SceneJob {
     explicit SceneJob(SceneRequest request);
     SceneJob(const SceneJob&) = delete;
     SceneJob& operator=(const SceneJob&) = delete;
-    /// Cancels: waits until the stage that runs reports progress next, or ends.
+    /// Cancels, and waits until the work ended.
     ~SceneJob();
+
+    /// Work ends when the stage that runs reports progress next, or ends. Does not wait for that.
+    void cancel() { cancelled_ = true; }
+    /// Whether the thread is done, so that the destructor does not wait.
+    bool ended() const { return ended_; }
 
     const SceneRequest& request() const { return request_; }
     Progress progress() const;
@@ -46,7 +53,7 @@ class SceneJob {
     void run();
 
     const SceneRequest request_;
-    std::atomic<bool> cancelled_ = false;
+    std::atomic<bool> cancelled_ = false, ended_ = false;
     mutable std::mutex mutex_;
     Progress progress_;               // guarded
     std::optional<Outcome> outcome_;  // guarded

@@ -145,7 +145,8 @@ class ScriptBuilder {
   public:
     std::vector<ScriptStep> steps;
 
-    void add(const std::string& name, const Words& arguments) {
+    void add(const std::string& name, const Words& arguments, std::size_t line) {
+        line_ = line;
         clock_ += 1;  // clicks of two lines are not a double click
         const auto number = [&](std::size_t i) { return number_of(arguments[i]).value_or(0); };
         if (name == "move") {
@@ -178,7 +179,7 @@ class ScriptBuilder {
         } else if (name == "frames") {
             steps.emplace_back(DrawFrames{static_cast<std::uint64_t>(number(0))});
         } else {
-            steps.emplace_back(Command{name, arguments});
+            steps.emplace_back(Command{name, arguments, line});
         }
     }
 
@@ -186,6 +187,7 @@ class ScriptBuilder {
     InputEvent& add_event(InputEvent::Kind kind) {
         InputEvent event;
         event.kind = kind;
+        event.line = line_;
         event.time = clock_ += 0.02;
         event.x = x_;
         event.y = y_;
@@ -235,6 +237,7 @@ class ScriptBuilder {
     double clock_ = 0;  // seconds; the hand's own, so that slow frames tear no double click apart
     double x_ = 0, y_ = 0;
     int held_ = 0;  // modifiers
+    std::size_t line_ = 0;
 };
 
 std::string text_of(std::istream& stream) {
@@ -268,6 +271,9 @@ int key_of_name(std::string_view name) {
                                                                      {"control", 341}}};
     for (const auto& [known, number] : named)
         if (known == name) return number;
+    constexpr std::string_view keypad = "keypad-";
+    if (name.size() == keypad.size() + 1 && name.starts_with(keypad) && name.back() >= '0' && name.back() <= '9')
+        return kKeypad0 + (name.back() - '0');
     return 0;
 }
 
@@ -288,7 +294,7 @@ std::vector<ScriptStep> parse_script(std::string_view text, const std::string& n
         const bool is_key = verb == "key" || verb == "hold" || verb == "let-go";
         if (!fits(*known, words) || (is_key && !names_key(words[0])))
             throw InputError(name, where, "expected " + std::string(known->expected) + " after " + verb);
-        builder.add(verb, words);
+        builder.add(verb, words, number);
     }
     return std::move(builder.steps);
 }

@@ -17,6 +17,7 @@ namespace splice {
 struct Command {
     std::string name;
     std::vector<std::string> arguments;
+    std::size_t line = 0;  // of the script; 0: not a script's
     double number(std::size_t argument) const;
 };
 
@@ -35,7 +36,8 @@ std::vector<ScriptStep> parse_script(std::string_view text, const std::string& n
 /// "-" is standard input. Throws the same, SystemError.
 std::vector<ScriptStep> read_script(const std::filesystem::path& path);
 
-/// The number of a key: a character, or tab, escape, enter, space, f12, left, right; 0 if there is no such key.
+/// The number of a key: a character, or tab, escape, enter, space, f12, left, right, keypad-0 to keypad-9; 0 if there
+/// is no such key.
 int key_of_name(std::string_view name);
 
 }  // namespace splice

@@ -16,7 +16,6 @@ int main(int argc, char** argv) {
             return 0;
         }
         Viewer viewer(*command);
-        viewer.run();
-        return 0;
+        return viewer.run() ? 0 : 1;
     });
 }

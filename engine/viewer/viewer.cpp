@@ -1,5 +1,7 @@
 #include "engine/viewer/viewer.h"
 
+#include "engine/capture/bake_of_scene.h"
+#include "engine/capture/look_settings.h"
 #include "engine/scene/gpu_model.h"
 #include "engine/viewer/settings_file.h"
 #include "preprocess/model_format/error.h"
@@ -75,7 +77,7 @@ double Viewer::idle_seconds() const {
     return job_ || refining_ ? 1.0 / 30 : kIdleSeconds;
 }
 
-void Viewer::run() {
+bool Viewer::run() {
     while (!quit_ && !window_.wants_to_close()) {
         try {
             loop();
@@ -95,14 +97,28 @@ void Viewer::run() {
             report(std::string("The window's surface was lost and made anew (") + error.what() + ")", true);
         }
     }
-    if (!options_.script) {
-        const VkExtent2D size = window_.unscaled_size();
-        save_settings(settings_of(state_, size.width, size.height));
-    }
+    remember_settings();
+    cancel_job();
+    // What is being read may take long to notice that nobody wants it.
+    window_.hide();
     const std::vector<gpu::ValidationMessage> messages = instance_.messages();
     if (!messages.empty())
         throw DeviceError("the validation layers report " + std::to_string(messages.size()) +
                           " problem(s), the first: " + messages.front().id + ": " + messages.front().text);
+    return !script_failed_;
+}
+
+void Viewer::remember_settings() const {
+    if (options_.script) return;
+    const VkExtent2D size = window_.unscaled_size();
+    ViewerSettings settings = settings_of(state_, size.width, size.height);
+    if (state_.scene && state_.scene->prepared.from_scene_file) {
+        // The scene's, not this person's.
+        const ViewerSettings before = read_settings();
+        settings.backend = before.backend;
+        settings.prefilter = before.prefilter;
+    }
+    save_settings(settings);
 }
 
 // What the scene is made of stays in memory, so that another device can take it over.
@@ -170,7 +186,7 @@ void Viewer::loop() {
             const double rate = 1 / std::max(frame, 1e-4);
             measured_.frames_per_second += (rate - measured_.frames_per_second) * 0.1;
         }
-        if (state_.reduce_while_moving && moving()) moving_detail_.took(frame * 1000, state_.moving_budget_ms);
+        if (state_.reduce_while_moving && moving()) moving_detail_.took(frame * 1000, state_.moving_budget_ms, state_.moving_most_tau);
         if (state_.first_picture_s == 0) {
             note_start(state_.scene ? "first picture" : "first frame");
             if (state_.scene) state_.first_picture_s = start_steps_.back().second;
@@ -190,7 +206,14 @@ void Viewer::note_start(const char* step) {
     if (start_steps_.empty() || start_steps_.back().first != step) start_steps_.emplace_back(step, passed.count());
 }
 
+void Viewer::cancel_job() {
+    if (!job_) return;
+    job_->cancel();
+    cancelled_jobs_.push_back(std::move(job_));
+}
+
 void Viewer::poll_job() {
+    std::erase_if(cancelled_jobs_, [](const auto& job) { return job->ended(); });
     if (!job_) {
         progress_.reset();
         return;
@@ -202,7 +225,8 @@ void Viewer::poll_job() {
     progress_.reset();
     redraw_ = kFramesToSettle;
     if (!outcome->scene) {
-        report(outcome->error, true);
+        script_failed_ = options_.script.has_value();
+        fail(outcome->error, outcome->request.line);
         return;
     }
     try {
@@ -210,13 +234,15 @@ void Viewer::poll_job() {
     } catch (const gpu::DeviceLostError&) {
         throw;
     } catch (const Error& error) {
-        report(error.what(), true);
+        script_failed_ = options_.script.has_value();
+        fail(error.what(), outcome->request.line);
     }
 }
 
 void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
     auto scene = std::make_unique<OpenScene>();
     scene->paths = request.paths;
+    scene->baked_anew = request.options.bake.has_value();
     scene->name = request.paths.front().filename().string();
     if (request.paths.size() > 1) scene->name += " and " + std::to_string(request.paths.size() - 1) + " more";
     if (state_.first_picture_s == 0) note_start("scene read");
@@ -245,21 +271,16 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
     state_.camera.set_bounds(bounds);
     state_.picked.reset();
     if (!request.keep_camera) {
-        state_.bake = BakeOptions{};
         const Viewport viewport = area(0).size;
         state_.camera.set_camera(description.camera
                                      ? *description.camera
                                      : frame_camera(bounds, description.framing, viewport.width, viewport.height));
-        for (CaptureSettings& look : state_.looks) {
-            look.view = description.view;
-            look.sides = description.sides;
-            look.epsilon_scale = description.epsilon_scale;
-            look.prefilter = description.prefilter;
-            look.shading = description.shading;
-            look.antialias = description.antialias;
-            look.tau = description.tau;
-            look.kernel = description.kernel;
-        }
+        state_.bake = BakeOptions{};
+        for (std::size_t i = scene->prepared.models.size(); i-- > 0;)
+            if (scene->prepared.models[i]->baked()) state_.bake = bake_of(description.models[i]);
+        // Files without a say leave the window's settings.
+        if (scene->prepared.from_scene_file) take_looks(description);
+        if (!description.levels_from) state_.freeze_cut = false;
     } else if (state_.scene) {
         // The same scene, baked anew: what was set in the window stays.
         scene->loaded.scene.lighting = state_.scene->loaded.scene.lighting;
@@ -268,6 +289,18 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
     }
     state_.scene = std::move(scene);
     ++state_.scene_revision;
+}
+
+void Viewer::take_looks(const SceneDescription& description) {
+    state_.comparison = description.comparison.kind;
+    state_.wipe = description.comparison.wipe;
+    state_.edited_look = 0;
+    apply_look(description.look, state_.looks[0]);
+    apply_look(state_.comparison == Comparison::kOff ? description.look : description.comparison.right,
+               state_.looks[1]);
+    if (state_.comparison == Comparison::kOff) state_.looks[1].shown = Shown::kTriangles;
+    state_.freeze_cut = description.levels_from.has_value();
+    state_.cut_camera = description.levels_from;
 }
 
 void Viewer::poll_shaders() {
@@ -308,10 +341,11 @@ void Viewer::draw_panels() {
     draw_overlays(context, panels);
     interface_.end_frame();
     content_.take();
-    // Commands may add commands.
+    // Commands may add commands. Those of panels were asked for by the script's hand, if it has one.
     while (!commands_.empty()) {
-        const Command command = commands_.front();
+        Command command = commands_.front();
         commands_.erase(commands_.begin());
+        if (command.line == 0 && script_at_ < script_.size()) command.line = script_line_;
         try {
             run_command(command);
         } catch (const gpu::DeviceLostError&) {
@@ -319,7 +353,7 @@ void Viewer::draw_panels() {
         } catch (const gpu::SurfaceLostError&) {
             throw;
         } catch (const Error& error) {
-            report(error.what(), true);
+            fail(error.what(), command.line);
         }
         redraw_ = kFramesToSettle;
     }

@@ -34,8 +34,9 @@ class Viewer {
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
 
-    /// Until the window is closed. Throws DeviceError where the device is lost a second time, or validation complained.
-    void run();
+    /// Until the window is closed. True unless an action of the script failed. Throws DeviceError where the device is
+    /// lost a second time, or validation complained.
+    bool run();
 
   private:
     /// All that a lost device takes with it, beside the scene's models.
@@ -55,6 +56,7 @@ class Viewer {
         std::filesystem::path path;
         Camera first;
         std::uint32_t count = 0, done = 0;
+        std::size_t line = 0;  // of the script
     };
 
     void loop();
@@ -72,8 +74,12 @@ class Viewer {
     void pick_at(const glm::dvec2& place);
     std::optional<glm::dvec3> surface_at(std::size_t area, const glm::dvec2& place) const;
 
+    void remember_settings() const;
+
+    void cancel_job();
     void poll_job();
     void show_scene(const SceneRequest& request, PreparedScene prepared);
+    void take_looks(const SceneDescription& description);
     void poll_shaders();
     void use_watched_shaders();
     void update_title();
@@ -88,13 +94,20 @@ class Viewer {
     // Commands (viewer_commands.cpp).
     void run_command(const Command& command);
     void set_value(const std::string& name, const std::string& value);
-    void open(std::vector<std::filesystem::path> paths, bool again);
-    void save_scene(const std::filesystem::path& path);
+    void open(std::vector<std::filesystem::path> paths, bool again, std::size_t line = 0);
     void go_to(const std::string& bookmark);
-    void write_statistics(const std::filesystem::path& path);
     void report(const std::string& text, bool error);
+    void fail(const std::string& text, std::size_t line);
     CaptureSettings full_settings(std::size_t look) const;
-    std::filesystem::path first_input() const;
+
+    // Files (viewer_files.cpp).
+    void take_screenshot(const std::filesystem::path& path);
+    void take_window_screenshot(const std::filesystem::path& path);
+    void save_scene(const std::filesystem::path& path);
+    SceneDescription describe(std::size_t look) const;
+    bool line_needs_scene(const CaptureSettings& settings) const;
+    std::string camera_line();
+    void write_statistics(const std::filesystem::path& path);
 
     Layout layout() const;
     std::size_t pictures() const { return state_.comparison == Comparison::kOff ? 1 : 2; }
@@ -111,10 +124,13 @@ class Viewer {
     std::optional<Graphics> graphics_;
     ViewerState state_;
     std::unique_ptr<SceneJob> job_;
+    std::vector<std::unique_ptr<SceneJob>> cancelled_jobs_;  // until they ended
     std::optional<SceneJob::Progress> progress_;
     std::optional<ShaderWatch> shaders_;
     std::vector<ScriptStep> script_;
     std::size_t script_at_ = 0;
+    std::size_t script_line_ = 0;  // of the last event or command
+    bool script_failed_ = false;
     std::uint64_t frames_to_draw_ = 0;  // of the script's step
     InputQueue input_;
     std::vector<Command> commands_;

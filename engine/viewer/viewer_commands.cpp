@@ -1,13 +1,9 @@
 // What commands do, whether a panel, a key or a script gives them.
-#include "engine/capture/png_file.h"
-#include "engine/viewer/capture_line.h"
-#include "engine/viewer/process_memory.h"
+#include "engine/viewer/free_name.h"
 #include "engine/viewer/settings_file.h"
 #include "engine/viewer/viewer.h"
 #include "preprocess/model_format/atomic_file.h"
 #include "preprocess/model_format/error.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +11,6 @@
 #include <functional>
 #include <iostream>
 #include <map>
-#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -37,6 +32,8 @@ bool on_or_off(const std::string& what, const std::string& value) {
 constexpr Names<ForcedRepresentation, 3> kBakes{{{ForcedRepresentation::kHybrid, "hybrid"},
                                                  {ForcedRepresentation::kTriangles, "triangles"},
                                                  {ForcedRepresentation::kSurfels, "surfels"}}};
+
+constexpr Names<Selection, 2> kSelections{{{Selection::kGeometric, "geometric"}, {Selection::kThesis, "thesis"}}};
 
 }  // namespace
 
@@ -82,8 +79,13 @@ void Viewer::report(const std::string& text, bool error) {
     redraw_ = kFramesToSettle;
 }
 
-std::filesystem::path Viewer::first_input() const {
-    return state_.scene->paths.front();
+// Of an action: told with its place in the script, if a script asked for it.
+void Viewer::fail(const std::string& text, std::size_t line) {
+    if (text.empty()) return;
+    if (!options_.script || line == 0) return report(text, true);
+    script_failed_ = true;
+    const std::string script = *options_.script == "-" ? "script" : options_.script->string();
+    report(InputError(script, "line " + std::to_string(line), text).what(), true);
 }
 
 CaptureSettings Viewer::full_settings(std::size_t look) const {
@@ -95,79 +97,19 @@ CaptureSettings Viewer::full_settings(std::size_t look) const {
     return settings;
 }
 
-void Viewer::open(std::vector<std::filesystem::path> paths, bool again) {
-    SceneRequest request{std::move(paths), {}, again};
+void Viewer::open(std::vector<std::filesystem::path> paths, bool again, std::size_t line) {
+    SceneRequest request{std::move(paths), {}, again, line};
     // One core stays with the window.
     request.options.threads = static_cast<int>(std::max(std::thread::hardware_concurrency(), 2U) - 1);
     if (again) request.options.bake = state_.bake;
+    cancel_job();
     job_ = std::make_unique<SceneJob>(std::move(request));
-}
-
-void Viewer::save_scene(const std::filesystem::path& path) {
-    SceneDescription description = state_.scene->loaded.description;
-    for (SceneModel& model : description.models)
-        if (auto* file = std::get_if<std::filesystem::path>(&model.source)) *file = std::filesystem::absolute(*file);
-    const CaptureSettings settings = full_settings(state_.edited_look);
-    description.camera = settings.camera;
-    description.lighting = state_.scene->loaded.scene.lighting;
-    description.background = state_.scene->loaded.scene.background;
-    description.width = settings.width;
-    description.height = settings.height;
-    description.view = settings.view;
-    description.sides = settings.sides;
-    description.epsilon_scale = settings.epsilon_scale;
-    description.prefilter = settings.prefilter;
-    description.shading = settings.shading;
-    description.antialias = settings.antialias;
-    description.tau = settings.tau;
-    description.kernel = settings.kernel;
-    write_text_file(path, write_scene(description, std::filesystem::absolute(path).parent_path()));
-    report("Wrote " + path.string(), false);
 }
 
 void Viewer::go_to(const std::string& name) {
     for (const CameraBookmark& bookmark : state_.scene->loaded.description.bookmarks)
         if (bookmark.name == name) return state_.camera.set_camera(bookmark.camera);
     throw UsageError("no bookmark \"" + name + "\"");
-}
-
-void Viewer::write_statistics(const std::filesystem::path& path) {
-    const CutStats& cut = measured_.stats.cut;
-    nlohmann::ordered_json start;
-    for (const auto& [step, seconds] : start_steps_)
-        start[step] = seconds;
-    nlohmann::ordered_json passes;
-    for (const PassHistory::Series& pass : measured_.history.series())
-        passes[pass.name] = std::accumulate(pass.ms.begin(), pass.ms.end(), 0.0) / PassHistory::kFrames;
-    const ProcessMemory memory = process_memory();
-    const PageStats& pages = measured_.stats.pages;
-    const nlohmann::ordered_json json{{"first_picture_s", state_.first_picture_s},
-                                      {"start_s", start},
-                                      {"frames", frame_times_.count()},
-                                      {"frames_per_second", frame_times_.frames_per_second()},
-                                      {"median_frame_ms", frame_times_.median_ms()},
-                                      {"median_panels_ms", panel_times_.median_ms()},
-                                      {"median_pictures_ms", picture_times_.median_ms()},
-                                      {"median_show_ms", show_times_.median_ms()},
-                                      {"drawn", {measured_.drawn_width, measured_.drawn_height}},
-                                      {"picture_ms", measured_.stats.frame_ms},
-                                      {"mean_pass_ms", passes},
-                                      {"tau", cut.tau},
-                                      {"surfels_drawn", measured_.stats.surfels_drawn},
-                                      {"triangles_drawn", measured_.stats.triangles_drawn},
-                                      {"select_ms", cut.select_ms},
-                                      {"pages",
-                                       {{"limit_bytes", pages.limit_bytes},
-                                        {"resident_bytes", pages.resident_bytes},
-                                        {"blocks_read", pages.blocks_read},
-                                        {"missing_surfels", pages.missing_surfels}}},
-                                      {"device_bytes", measured_.device_bytes},
-                                      {"heap_bytes", memory.heap_bytes},
-                                      {"resident_bytes", memory.resident_bytes},
-                                      {"open_files", memory.open_files}};
-    write_text_file(path, json.dump(2) + "\n");
-    for (FrameTimes* times : {&frame_times_, &panel_times_, &picture_times_, &show_times_})
-        times->clear();
 }
 
 void Viewer::set_value(const std::string& name, const std::string& value) {
@@ -195,7 +137,9 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
              look.antialias = static_cast<std::uint32_t>(samples);
          }},
         {"tau", [&] { look.tau = number(0, kMostTau); }},
+        {"merge", [&] { look.merge_px = number(0, kMostMergePixels); }},
         {"budget", [&] { state_.moving_budget_ms = number(1, 1000); }},
+        {"moving-tau", [&] { state_.moving_most_tau = number(0, MovingDetail::kCoarsest); }},
         {"freeze", [&] { state_.freeze_cut = on_or_off("set freeze", value); }},
         {"kernel",
          [&] {
@@ -208,6 +152,16 @@ void Viewer::set_value(const std::string& name, const std::string& value) {
         {"coarser", [&] { state_.reduce_while_moving = on_or_off("set coarser", value); }},
         {"graph", [&] { state_.graph_window = on_or_off("set graph", value); }},
         {"bake", [&] { state_.bake.cluster.representation = named(kBakes, value, "set bake"); }},
+        {"selection",
+         [&] {
+             state_.bake.cluster.selection = named(kSelections, value, "set selection");
+             state_.bake.cluster.triangle_share.reset();
+         }},
+        {"sampling",
+         [&] {
+             state_.bake.sampling.thesis_c.reset();
+             if (value != "adaptive") state_.bake.sampling.thesis_c = number(0.1, 64);
+         }},
         {"triangle-share", [&] { state_.bake.cluster.triangle_share = number(0, 1); }},
         {"spacing",
          [&] {
@@ -234,10 +188,15 @@ void Viewer::run_command(const Command& command) {
     const auto need_scene = [&] {
         if (!state_.scene) throw UsageError(name + ": nothing is open");
     };
+    // Without a name, keys and buttons write a new file; scripts name theirs.
+    const auto file_or_new = [&](const char* usual) -> std::filesystem::path {
+        if (arguments.empty()) return free_name(usual);
+        return arguments[0];
+    };
     const std::map<std::string, std::function<void()>> commands{
         {"open",
          [&] {
-             open({arguments.begin(), arguments.end()}, false);
+             open({arguments.begin(), arguments.end()}, false, command.line);
          }},
         {"resize",
          [&] {
@@ -261,53 +220,39 @@ void Viewer::run_command(const Command& command) {
              view = kViewNames[(static_cast<std::size_t>(view) + step) % count].value;
          }},
         {"set", [&] { set_value(arguments[0], arguments[1]); }},
-        {"compare", [&] { state_.comparison = named(kComparisonNames, arguments[0], "compare"); }},
+        {"compare",
+         [&] {
+             state_.comparison = named(kComparisonNames, arguments[0], "compare");
+             if (state_.comparison == Comparison::kOff) state_.edited_look = 0;
+         }},
         {"panels", [&] { state_.panels = on_or_off("panels", arguments[0]); }},
         {"rebake",
          [&] {
              need_scene();
              if (!state_.scene->bakeable) throw UsageError("only meshes and shapes can be baked anew");
-             open(state_.scene->paths, true);
+             open(state_.scene->paths, true, command.line);
          }},
         {"screenshot",
          [&] {
              need_scene();
-             const CaptureSettings settings = full_settings(state_.edited_look);
-             Frame frame = graphics_->renderer->render(state_.scene->loaded.scene, settings);
-             write_png(arguments[0], {frame.width, frame.height, std::move(frame.rgba)});
-             report("Wrote " + arguments[0], false);
+             take_screenshot(file_or_new("splice-view.png"));
          }},
-        {"screenshot-window",
-         [&] {
-             moved_at_ = -1e9;
-             draw_pictures();
-             WindowPixels pixels;
-             // Twice where the window changed, or fonts were missing.
-             for (int i = 0; i < 4 && !show_window(&pixels); ++i)
-                 continue;
-             if (pixels.rgba.empty()) throw DeviceError("this device cannot read its window");
-             write_png(arguments[0], {pixels.width, pixels.height, std::move(pixels.rgba)});
-             // A script's next picture of the window shall not have the message.
-             if (!options_.script) report("Wrote " + arguments[0], false);
-         }},
+        {"screenshot-window", [&] { take_window_screenshot(file_or_new("splice-view-window.png")); }},
         {"camera-line",
          [&] {
              need_scene();
-             const CaptureSettings settings = full_settings(state_.edited_look);
-             write_text_file(arguments[0],
-                             capture_line(first_input(), settings, state_.scene->loaded.scene.background) + "\n");
+             write_text_file(arguments[0], camera_line() + "\n");
          }},
         {"copy-camera",
          [&] {
              need_scene();
-             const CaptureSettings settings = full_settings(state_.edited_look);
-             window_.set_clipboard(capture_line(first_input(), settings, state_.scene->loaded.scene.background));
+             window_.set_clipboard(camera_line());
              report("The command line is on the clipboard", false);
          }},
         {"save-scene",
          [&] {
              need_scene();
-             save_scene(arguments[0]);
+             save_scene(file_or_new("splice-view.json"));
          }},
         {"bookmark",
          [&] {
@@ -330,8 +275,10 @@ void Viewer::run_command(const Command& command) {
         {"turntable",
          [&] {
              need_scene();
+             const auto count = static_cast<std::uint32_t>(command.number(0));
              turntable_ =
-                 Turntable{arguments[1], state_.camera.camera(), static_cast<std::uint32_t>(command.number(0)), 0};
+                 Turntable{free_series("splice-view-turn.png", count), state_.camera.camera(), count, 0, command.line};
+             if (arguments.size() > 1) turntable_->path = arguments[1];
          }},
         {"statistics", [&] { write_statistics(arguments[0]); }},
         {"lose-surface", [&] { throw gpu::SurfaceLostError("as the script asked"); }},

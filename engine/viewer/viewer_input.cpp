@@ -24,10 +24,13 @@ void Viewer::play_script() {
         if (!at_rest()) return;
     } else if (const auto* event = std::get_if<InputEvent>(&step)) {
         if (!input_.empty()) return;
+        script_line_ = event->line;
         window_.events().push_back(*event);
     } else {
         if (!input_.empty()) return;
-        commands_.push_back(std::get<Command>(step));
+        const auto& command = std::get<Command>(step);
+        script_line_ = command.line;
+        commands_.push_back(command);
     }
     ++script_at_;
 }
@@ -53,7 +56,7 @@ void Viewer::handle(const InputEvent& event) {
     const bool over_panel = interface_.wants_mouse() && !state_.navigation.dragging() && !dragging_divider_;
     switch (event.kind) {
         case InputEvent::Kind::kDrop: {
-            Command open{"open", {}};
+            Command open{"open", {}, event.line};
             for (const std::filesystem::path& file : event.files)
                 open.arguments.push_back(file.string());
             commands_.push_back(std::move(open));
@@ -106,7 +109,7 @@ bool Viewer::handle_divider(const InputEvent& event) {
 bool Viewer::handle_key(const InputEvent& event) {
     const bool flying = state_.navigation.dragging();
     const auto command = [&](const char* name, std::vector<std::string> arguments = {}) {
-        commands_.push_back({name, std::move(arguments)});
+        commands_.push_back({name, std::move(arguments), event.line});
         return true;
     };
     if (event.repeated) return false;
@@ -119,7 +122,7 @@ bool Viewer::handle_key(const InputEvent& event) {
         case 'R':
             return command("rebake");
         case 'P':
-            return command("screenshot", {"splice-view.png"});
+            return command("screenshot");
         case 'C':
             return command("copy-camera");
         case 'X': {

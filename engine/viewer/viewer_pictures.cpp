@@ -157,7 +157,7 @@ void Viewer::advance_turntable() {
     } catch (const gpu::DeviceLostError&) {
         throw;
     } catch (const Error& error) {
-        report(error.what(), true);
+        fail(error.what(), turntable_->line);
     }
     turntable_.reset();
 }

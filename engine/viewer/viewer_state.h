@@ -3,7 +3,7 @@
 
 #include "engine/capture/capture.h"
 #include "engine/capture/load_scene.h"
-#include "engine/scene/named.h"
+#include "engine/scene/scene_look.h"
 #include "engine/viewer/camera_controller.h"
 #include "engine/viewer/navigation.h"
 #include "engine/viewer/pass_history.h"
@@ -23,10 +23,6 @@
 
 namespace splice {
 
-enum class Comparison { kOff, kSideBySide, kWipe };
-inline constexpr Names<Comparison, 3> kComparisonNames{
-    {{Comparison::kOff, "off"}, {Comparison::kSideBySide, "side-by-side"}, {Comparison::kWipe, "wipe"}}};
-
 /// A scene in memory and on the device.
 struct OpenScene {
     std::vector<std::filesystem::path> paths;
@@ -35,6 +31,7 @@ struct OpenScene {
     LoadedScene loaded;
     std::vector<PickableModel> pickable;  // one an instance
     bool bakeable = false;                // something in it is a mesh or a shape
+    bool baked_anew = false;              // with options of the window, in place of the files'
     std::uint64_t patches = 0, triangles = 0, surfels = 0, source_triangles = 0, bytes = 0;  // of all instances
 };
 
@@ -62,6 +59,7 @@ struct ViewerState {
     double wipe = 0.5;  // share of the picture that is left of the line
     bool reduce_while_moving = true;
     double moving_budget_ms = MovingDetail::kTargetMs;  // of a frame while the camera moves
+    double moving_most_tau = MovingDetail::kCoarsest;   // pixels of the picture as drawn, while the camera moves; 0: held
     bool freeze_cut = false;                            // levels of detail stay those of `cut_camera`
     std::optional<Camera> cut_camera;
 

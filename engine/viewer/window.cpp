@@ -178,6 +178,11 @@ void Window::restore() {
     glfwRestoreWindow(window_);
 }
 
+void Window::hide() {
+    glfwHideWindow(window_);
+    glfwPollEvents();
+}
+
 VkExtent2D Window::unscaled_size() const {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);

@@ -45,6 +45,8 @@ class Window {
     void resize(std::uint32_t width, std::uint32_t height);
     void minimise();
     void restore();
+    /// For good.
+    void hide();
     /// As if the window were on a monitor of another scale from now on.
     void set_content_scale(double scale);
     void set_clipboard(const std::string& text);

@@ -54,35 +54,50 @@ void read_all(Channel out, Channel err, Outcome& outcome) {
     }
 }
 
-std::vector<char*> argument_list(const Spawn& spawn) {
-    std::vector<char*> list = {const_cast<char*>(spawn.program.c_str())};
-    for (const std::string& argument : spawn.arguments)
-        list.push_back(const_cast<char*>(argument.c_str()));
-    list.push_back(nullptr);
-    return list;
-}
-
 // In the child: nothing is allocated here, as another thread may have held the allocator's lock when it was forked.
-[[noreturn]] void become(const Spawn& spawn, char* const* arguments, Channel out, Channel err) {
+[[noreturn]] void become(const Spawn& spawn, char* const* arguments, char* const* environment, Channel out,
+                         Channel err) {
     dup2(out.write_end, STDOUT_FILENO);
     dup2(err.write_end, STDERR_FILENO);
     for (const int descriptor : {out.read_end, out.write_end, err.read_end, err.write_end})
         close(descriptor);
     if (!spawn.folder.empty() && chdir(spawn.folder.c_str()) != 0) _exit(126);
     if (spawn.in_child) spawn.in_child();
-    execvp(spawn.program.c_str(), arguments);
+    execvpe(spawn.program.c_str(), arguments, environment);
     _exit(127);
 }
 
 }  // namespace
 
+std::vector<std::string> changed_environment(const std::vector<std::string>& changes) {
+    const auto name_of = [](const std::string& variable) { return variable.substr(0, variable.find('=')); };
+    std::vector<std::string> variables;
+    for (const std::string& change : changes)
+        if (change.find('=') != std::string::npos) variables.push_back(change);
+    for (char** variable = environ; *variable != nullptr; ++variable)
+        if (std::ranges::none_of(changes,
+                                 [&](const std::string& change) { return name_of(change) == name_of(*variable); }))
+            variables.emplace_back(*variable);
+    return variables;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+    std::vector<char*> pointers;
+    for (std::string& word : words)
+        pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
 Outcome run(const Spawn& spawn) {
     const Channel out = open_pipe();
     const Channel err = spawn.stderr_is_terminal ? open_terminal() : open_pipe();
-    const std::vector<char*> arguments = argument_list(spawn);
+    std::vector<std::string> words = spawn.arguments, variables = changed_environment(spawn.environment);
+    words.insert(words.begin(), spawn.program.string());
+    const std::vector<char*> arguments = pointers_to(words), environment = pointers_to(variables);
     const pid_t process = fork();
     if (process < 0) throw std::runtime_error("fork failed");
-    if (process == 0) become(spawn, arguments.data(), out, err);
+    if (process == 0) become(spawn, arguments.data(), environment.data(), out, err);
     close(out.write_end);
     close(err.write_end);
     if (spawn.while_it_runs) spawn.while_it_runs(process);

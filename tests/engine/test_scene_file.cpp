@@ -70,7 +70,7 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
         {with_model(R"("colour": 1)"),
          "scene.json: /models/0/colour: unknown member, expected one of file, shape, transform, unit_box, "
          "representation, "
-         "triangle_share, max_spacing"},
+         "selection, triangle_share, sampling, max_spacing"},
         {with(R"("lighting": {"highlight": "shiny"})"),
          "scene.json: /lighting/highlight: expected one of \"blinn-phong\", \"phong\", got \"shiny\""},
         {with(R"("lighting": {"rim": -1})"),
@@ -84,6 +84,30 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
         {with(R"("render": {"antialias": 9})"),
          "scene.json: /render/antialias: expected a whole number from 1 to 8, got 9"},
         {with(R"("render": {"tau": -1})"), "scene.json: /render/tau: expected a number from 0 to 1000, got -1"},
+        {with(R"("render": {"show": "points"})"),
+         "scene.json: /render/show: expected one of \"hybrid\", \"triangles\", \"surfels\", got \"points\""},
+        {with(R"("render": {"backend": "fast"})"),
+         "scene.json: /render/backend: expected one of \"auto\", \"sprite\", \"raster\", \"tile\", \"point\", got "
+         "\"fast\""},
+        {with(R"("render": {"merge": 65})"), "scene.json: /render/merge: expected a number from 0 to 64, got 65"},
+        {with(R"("render": {"levels_from": {"azimuth": 3}})"),
+         "scene.json: /render/levels_from: expected a camera with eye and target, got an object"},
+        {with(R"("comparison": {})"), "scene.json: /comparison: member \"kind\" is missing"},
+        {with(R"("comparison": {"kind": "blink"})"),
+         "scene.json: /comparison/kind: expected one of \"off\", \"side-by-side\", \"wipe\", got \"blink\""},
+        {with(R"("comparison": {"kind": "wipe", "wipe": 2})"),
+         "scene.json: /comparison/wipe: expected a number from 0 to 1, got 2"},
+        {with(R"("comparison": {"kind": "wipe", "right": {"size": [1, 1]}})"),
+         "scene.json: /comparison/right/size: unknown member, expected one of view, show, backend, sides, "
+         "epsilon_scale, prefilter, antialias, shading, merge, tau, kernel"},
+        {with(R"("comparison": {"kind": "wipe", "right": {"tau": -1}})"),
+         "scene.json: /comparison/right/tau: expected a number from 0 to 1000, got -1"},
+        {with_model(R"("selection": "random")"),
+         "scene.json: /models/0/selection: expected one of \"geometric\", \"thesis\", got \"random\""},
+        {with_model(R"("sampling": 0)"),
+         "scene.json: /models/0/sampling: expected \"adaptive\" or a number from 0.1 to 64, got 0"},
+        {with_model(R"("sampling": "dense")"),
+         "scene.json: /models/0/sampling: expected \"adaptive\" or a number from 0.1 to 64, got \"dense\""},
         {with(R"("render": {"kernel": "box"})"),
          "scene.json: /render/kernel: expected a kernel, such as \"gaussian:0.5\", \"confetti:6,1.5,3\", "
          "\"constant\" or \"disk\", got \"box\""},
@@ -137,7 +161,7 @@ TEST_CASE("a scene is complained about with the path of the offending value") {
          "scene.json: /render/sides: expected one of \"as-baked\", \"one-sided\", \"two-sided\", got \"both\""},
         {with("\"a/b~\": 1"),
          "scene.json: /a~1b~0: unknown member, expected one of models, camera, lighting, background, render, "
-         "bookmarks"},
+         "comparison, bookmarks"},
         {R"({"models": [{"file": ")" + big + R"("}], "background": ")" + big + "\"}",
          "scene.json: /background: expected a colour like \"#ff8000\", or \"transparent\", got \"" +
              std::string(59, 'x') + "..."},
@@ -152,7 +176,7 @@ TEST_CASE("a scene that says everything is read as it says") {
             {"file": "a.splice", "transform": {"scale": 2, "rotation": {"axis": [0, 0, 2], "angle": 90},
                                                "translation": [1, 2, 3]}},
             {"shape": {"kind": "torus-knot", "p": 3}, "unit_box": true, "representation": "surfels",
-             "max_spacing": 0.5}],
+             "max_spacing": 0.5, "selection": "thesis", "sampling": 2}],
         "camera": {"eye": [0, 0, 5], "target": [0, 0, 0], "up": [1, 0, 0], "fov": 30, "orthographic": true, "height": 4},
         "lighting": {"ambient": [0.1, 0.2, 0.3], "specular": 0.5, "shininess": 8, "highlight": "phong",
                      "rim": 0.25, "rim_exponent": 5, "lights": [
@@ -160,7 +184,9 @@ TEST_CASE("a scene that says everything is read as it says") {
             {"type": "directional", "direction": [0, -1, 0], "space": "camera", "colour": 0.5}]},
         "background": "#f80",
         "render": {"size": [320, 200], "view": "overlap", "sides": "two-sided", "epsilon_scale": 1.5, "prefilter": false,
-                   "shading": "deferred", "antialias": 3, "tau": 1.5, "kernel": "gaussian:0.5"}
+                   "shading": "deferred", "antialias": 3, "tau": 1.5, "kernel": "gaussian:0.5",
+                   "show": "surfels", "backend": "raster", "merge": 0},
+        "comparison": {"kind": "side-by-side", "right": {"show": "triangles", "tau": 0}}
     })",
                                                "scene.json", "folder");
     REQUIRE(scene.models.size() == 2);
@@ -175,7 +201,10 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK(scene.models[1].unit_box);
     CHECK(scene.models[1].representation == SceneRepresentation::kSurfels);
     CHECK(scene.models[1].max_spacing == 0.5);
-    CHECK(scene.models[1].bake_members == std::vector<std::string>{"representation", "max_spacing"});
+    CHECK(scene.models[1].bake_members ==
+          std::vector<std::string>{"representation", "selection", "sampling", "max_spacing"});
+    CHECK(scene.models[1].selection == SceneSelection::kThesis);
+    CHECK(scene.models[1].sampling == 2);
     REQUIRE(scene.camera);
     CHECK(scene.camera->orthographic);
     CHECK(scene.camera->orthographic_height == 4);
@@ -190,14 +219,21 @@ TEST_CASE("a scene that says everything is read as it says") {
     CHECK(scene.background.colour.g == Approx(0x88 / 255.0));
     CHECK(scene.width == 320);
     CHECK(scene.height == 200);
-    CHECK(scene.view == View::kOverlap);
-    CHECK(scene.sides == Sides::kTwoSided);
-    CHECK(scene.epsilon_scale == 1.5);
-    CHECK_FALSE(scene.prefilter);
-    CHECK(scene.shading == Shading::kDeferred);
-    CHECK(scene.antialias == 3);
-    CHECK(scene.tau == 1.5);
-    CHECK(scene.kernel == parse_kernel("gaussian:0.5"));
+    CHECK(scene.look.view == View::kOverlap);
+    CHECK(scene.look.sides == Sides::kTwoSided);
+    CHECK(scene.look.epsilon_scale == 1.5);
+    CHECK_FALSE(scene.look.prefilter);
+    CHECK(scene.look.shading == Shading::kDeferred);
+    CHECK(scene.look.antialias == 3);
+    CHECK(scene.look.tau == 1.5);
+    CHECK(scene.look.shown == Shown::kSurfels);
+    CHECK(scene.look.backend == Backend::kRaster);
+    CHECK(scene.look.merge_px == 0);
+    CHECK(scene.comparison.kind == Comparison::kSideBySide);
+    CHECK(scene.comparison.right.shown == Shown::kTriangles);
+    CHECK(scene.comparison.right.tau == 0);
+    CHECK(scene.comparison.right.view == View::kOverlap);  // what it does not say is the left one's
+    CHECK(scene.look.kernel == parse_kernel("gaussian:0.5"));
 }
 
 TEST_CASE("the scene format's example in the documentation is valid") {

@@ -216,6 +216,28 @@ TEST_CASE("a mesh and a scene that names it make the same picture") {
     CHECK(std::any_of(mesh.rgba.begin(), mesh.rgba.end(), [](std::uint8_t v) { return v != 255; }));
 }
 
+TEST_CASE("several models share a picture, as a scene that names them, but scenes are captured alone") {
+    const TemporaryFolder folder;
+    const std::string tetra = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    write_text(folder / "a.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\n" + tetra);
+    write_text(folder / "b.obj", "v 3 0 0\nv 5 0 0\nv 3 2 0\nv 3 0 2\n" + tetra);
+    write_text(folder / "scene.json",
+               R"({"models": [{"file": "a.obj"}, {"file": "b.obj"}], "render": {"size": [64, 64], "show": "triangles",
+                   "backend": "raster", "merge": 0}})");
+    CHECK(capture(folder, {"a.obj", "b.obj", "-o", "both.png", "--size", "64x64", "--show", "triangles"}).exit_code ==
+          0);
+    CHECK(capture(folder, {"a.obj", "-o", "one.png", "--size", "64x64"}).exit_code == 0);
+    CHECK(capture(folder, {"scene.json", "-o", "scene.png", "--stats", "stats.json"}).exit_code == 0);
+    CHECK(read_png(folder / "both.png").rgba == read_png(folder / "scene.png").rgba);
+    CHECK(read_png(folder / "both.png").rgba != read_png(folder / "one.png").rgba);
+    const Outcome refused = capture(folder, {"a.obj", "scene.json", "-o", "none.png"});
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err.find("scene.json: a scene file is opened alone") != std::string::npos);
+    const Outcome overwriting = capture(folder, {"a.obj", "b.obj", "-o", "b.obj"});
+    CHECK(overwriting.exit_code == 2);
+    CHECK(read_text(folder / "b.obj").starts_with("v 3"));
+}
+
 TEST_CASE("unit_box places a model by its bounding box, whatever its coordinates") {
     const TemporaryFolder folder;
     write_text(folder / "small.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");

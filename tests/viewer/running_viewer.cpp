@@ -14,8 +14,6 @@
 #include <fstream>
 #include <iterator>
 
-extern char** environ;  // NOLINT(readability-redundant-declaration)
-
 namespace splice::test {
 
 std::string read_text(const std::filesystem::path& path) {
@@ -37,35 +35,22 @@ void write_model_file(const std::filesystem::path& mesh, const std::filesystem::
     REQUIRE(baked.exit_code == 0);
 }
 
-namespace {
-
-// The test's own environment, with another display and other settings.
-std::vector<std::string> environment_for(const std::filesystem::path& folder, const std::string& display) {
-    std::vector<std::string> variables{"DISPLAY=" + display, "XDG_CONFIG_HOME=" + folder.string()};
-    for (char** variable = environ; *variable != nullptr; ++variable) {
-        const std::string text(*variable);
-        if (!text.starts_with("DISPLAY=") && !text.starts_with("XDG_CONFIG_HOME=") &&
-            !text.starts_with("WAYLAND_DISPLAY="))
-            variables.push_back(text);
-    }
-    return variables;
+Picture captured_by(const std::filesystem::path& folder, const std::string& line) {
+    REQUIRE(line.starts_with("splice-capture "));
+    const std::string path = program("splice-capture").parent_path().string();
+    const Outcome outcome =
+        run({"/bin/sh", {"-c", "PATH='" + path + "':$PATH; " + line.substr(0, line.find('\n')) + " --quiet"}, folder});
+    INFO(line << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return read_png(folder / "capture.png");
 }
-
-std::vector<char*> pointers_to(std::vector<std::string>& words) {
-    std::vector<char*> pointers;
-    for (std::string& word : words)
-        pointers.push_back(word.data());
-    pointers.push_back(nullptr);
-    return pointers;
-}
-
-}  // namespace
 
 RunningViewer::RunningViewer(const std::filesystem::path& folder, const std::string& display,
                              std::vector<std::string> arguments)
     : folder_(folder) {
     arguments.insert(arguments.begin(), program("splice-view").string());
-    std::vector<std::string> variables = environment_for(folder, display);
+    std::vector<std::string> variables =
+        changed_environment({"DISPLAY=" + display, "XDG_CONFIG_HOME=" + folder.string(), "WAYLAND_DISPLAY"});
     const std::vector<char*> words = pointers_to(arguments), environment = pointers_to(variables);
     // open(2)'s header declares splice(2), which clashes with the namespace.
     std::FILE* const out = std::fopen((folder / "out.txt").c_str(), "w");
@@ -110,10 +95,13 @@ void Stage::wait_for(const std::string& file) const {
     REQUIRE(display->wait_for_title(file + " - splice-view"));
 }
 
-Stage::Run Stage::run_script(const std::string& script, const std::string& size) const {
+Stage::Run Stage::run_script(const std::string& script, const std::string& size,
+                             const std::vector<std::string>& inputs) const {
     write_text(folder / "script.txt", script);
-    RunningViewer viewer(folder.path(), display->name(),
-                         {"knot.ply", "--device", "cpu", "--validate", "--size", size, "--script", "script.txt"});
+    std::vector<std::string> arguments = inputs;
+    for (const char* option : {"--device", "cpu", "--validate", "--size", size.c_str(), "--script", "script.txt"})
+        arguments.emplace_back(option);
+    RunningViewer viewer(folder.path(), display->name(), arguments);
     const int code = viewer.wait();
     return {code, viewer.err()};
 }

@@ -24,6 +24,9 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 void write_mesh_file(const std::filesystem::path& path, std::uint32_t segments = 60);
 void write_model_file(const std::filesystem::path& mesh, const std::filesystem::path& model);
 
+/// Runs a command line of splice-capture in a shell, as a user who pasted it, and returns its picture, capture.png.
+Picture captured_by(const std::filesystem::path& folder, const std::string& line);
+
 /// Works in a folder, which also has its settings; its streams go to files there.
 class RunningViewer {
   public:
@@ -47,12 +50,13 @@ struct Stage {
     explicit Stage(std::uint32_t segments = 60);
     /// Requires a window that comes to show this file.
     void wait_for(const std::string& file) const;
-    /// splice-view on the mesh, with validation, by this script.
+    /// splice-view on the mesh, or other files, with validation, by this script.
     struct Run {
         int code;
         std::string err;
     };
-    Run run_script(const std::string& script, const std::string& size = "1000x600") const;
+    Run run_script(const std::string& script, const std::string& size = "1000x600",
+                   const std::vector<std::string>& inputs = {"knot.ply"}) const;
 
     std::unique_ptr<VirtualDisplay> display;  // null where there is no Xvfb: nothing to test
     TemporaryFolder folder;

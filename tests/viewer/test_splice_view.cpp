@@ -7,37 +7,15 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
 using namespace splice;
 using namespace splice::test;
 
-namespace {
-
-// Runs the line that "copy camera" gives, and returns its picture.
-Picture captured_by(const std::filesystem::path& folder, const std::filesystem::path& line) {
-    const std::string command = read_text(line);
-    REQUIRE(command.starts_with("splice-capture "));
-    const std::string path = program("splice-capture").parent_path().string();
-    const Outcome outcome =
-        run({"/bin/sh",
-             {"-c", "PATH='" + path + "':$PATH; " + command.substr(0, command.find('\n')) + " --quiet"},
-             folder});
-    INFO(command << outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    return read_png(folder / "capture.png");
-}
-
-}  // namespace
-
 TEST_CASE("without a display it says so in a line and points to splice-capture") {
     const TemporaryFolder folder;
-    const Outcome outcome = run({.program = program("splice-view"), .in_child = [] {
-                                     unsetenv("DISPLAY");
-                                     unsetenv("WAYLAND_DISPLAY");
-                                 }});
+    const Outcome outcome = run({.program = program("splice-view"), .environment = {"DISPLAY", "WAYLAND_DISPLAY"}});
     CHECK(outcome.exit_code == 1);
     CHECK(line_count(outcome.err) == 1);
     CHECK_THAT(outcome.err, Catch::StartsWith("splice-view: no display") && Catch::Contains("splice-capture"));
@@ -77,6 +55,10 @@ TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, s
         const Picture front = display->still_picture();
         display->key("7");
         const Picture top = display->still_picture();
+        display->key("KP_1");
+        CHECK(difference(scene_part(display->still_picture()), scene_part(front)) == 0);
+        display->key("KP_7");
+        CHECK(difference(scene_part(display->still_picture()), scene_part(top)) == 0);
         CHECK(difference(scene_part(front), scene_part(top)) > 0.03);
         display->key("5");
         CHECK(difference(scene_part(display->still_picture()), scene_part(top)) > 0.005);
@@ -143,10 +125,8 @@ TEST_CASE("real input: load, orbit, zoom, resize, every view, drop, bake anew, s
         display->key("Tab");
         const Picture alone = display->still_picture();
         display->key("p");
-        display->picture_when([&](const Picture&) {
-            return viewer.out().find("splice-view.png", viewer.out().find("splice-view.png") + 1) != std::string::npos;
-        });
-        const Picture taken = read_png(folder / "splice-view.png");
+        display->picture_when([&](const Picture&) { return std::filesystem::exists(folder / "splice-view-1.png"); });
+        const Picture taken = read_png(folder / "splice-view-1.png");
         CHECK(taken.width == 1000);
         CHECK(difference(cropped(taken, 0, 0, 1000, 400), cropped(alone, 0, 0, 1000, 400)) == 0);
     }
@@ -191,7 +171,7 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
         INFO(name);
         const Picture shot = read_png(folder / (std::string(name) + ".png"));
         CHECK(shot.width == 1000 - kPanel);
-        CHECK(difference(shot, captured_by(folder.path(), folder / (std::string(name) + ".txt"))) == 0);
+        CHECK(difference(shot, captured_by(folder.path(), read_text(folder / (std::string(name) + ".txt")))) == 0);
     }
     const Picture turned = read_png(folder / "turned.png");
     CHECK(difference(scene_part(read_png(folder / "window.png")), turned) == 0);
@@ -201,9 +181,7 @@ TEST_CASE("a script does the same, and its screenshots are splice-capture's pict
     CHECK(difference(read_png(folder / "turn-001.png"), read_png(folder / "turn-002.png")) > 0.02);
 
     // The saved scene shows what the window showed.
-    const Outcome outcome = run({program("splice-capture"),
-                                 {"saved.json", "-o", "saved.png", "--backend", "auto", "--show", "triangles"},
-                                 folder.path()});
+    const Outcome outcome = run({program("splice-capture"), {"saved.json", "-o", "saved.png"}, folder.path()});
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     CHECK(difference(read_png(folder / "saved.png"), read_png(folder / "side.png")) == 0);
@@ -241,35 +219,6 @@ TEST_CASE("of a model larger than --memory no more is held, and pictures become 
         const Picture window = read_png(folder / (std::string(name) + "-window.png"));
         CHECK(difference(scene_part(window), read_png(folder / (std::string(name) + ".png"))) == 0);
     }
-}
-
-TEST_CASE("shaders are compiled anew when a source changes, and a mistake leaves the last good ones") {
-    const Stage stage(40);
-    if (!stage.display) return;
-    const auto& [display, folder] = stage;
-    std::filesystem::copy(source_file("shaders/glsl"), folder / "glsl", std::filesystem::copy_options::recursive);
-    RunningViewer viewer(folder.path(), display->name(),
-                         {"knot.ply", "--device", "cpu", "--validate", "--size", "800x600", "--shaders", "glsl"});
-    stage.wait_for("knot.ply");
-    display->picture_when([&](const Picture&) { return viewer.out().find("compiled anew") != std::string::npos; });
-    display->key("Escape");
-    const Picture before = display->still_picture();
-    const std::string source = read_text(folder / "glsl" / "surfel_normalise.frag");
-    const std::size_t end = source.rfind('}');
-    REQUIRE(end != std::string::npos);
-    write_text(folder / "glsl" / "surfel_normalise.frag", source.substr(0, end) + "\nnot a statement\n}\n");
-    display->picture_when([&](const Picture&) { return !viewer.err().empty(); });
-    CHECK_THAT(viewer.err(), Catch::Contains("surfel_normalise.frag"));
-    write_text(folder / "glsl" / "surfel_normalise.frag", source);
-    display->picture_when([&](const Picture&) {
-        const std::string out = viewer.out();
-        return out.find("compiled anew", out.find("compiled anew") + 1) != std::string::npos;
-    });
-    display->key("Escape");
-    const Picture after = display->still_picture();
-    CHECK(difference(cropped(before, 240, 0, 500, 500), cropped(after, 240, 0, 500, 500)) == 0);
-    display->ask_to_close();
-    CHECK(viewer.wait() == 0);
 }
 
 TEST_CASE("usage: what is not understood ends the run with 2 before a window opens") {

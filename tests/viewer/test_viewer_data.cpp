@@ -68,6 +68,20 @@ TEST_CASE("where half the resolution is too slow, levels of detail grow coarser 
     CHECK(detail.tau() == MovingDetail::kCoarsest);
 }
 
+TEST_CASE("levels of detail grow no coarser than they may, and are held where they may not at all") {
+    MovingDetail detail;
+    for (int i = 0; i < 100; ++i)
+        detail.took(1000, MovingDetail::kTargetMs, 3);
+    CHECK(detail.share() == 0.5);
+    CHECK(detail.tau() == 3);
+    detail.took(1000, MovingDetail::kTargetMs, 0);
+    CHECK(detail.tau() == 0);
+    for (int i = 0; i < 100; ++i)
+        detail.took(1000, MovingDetail::kTargetMs, 0);
+    CHECK(detail.tau() == 0);
+    CHECK(detail.share() == 0.5);
+}
+
 TEST_CASE("a single slow frame, as shaders cause, does not make levels of detail coarser") {
     MovingDetail detail;
     detail.took(80);
@@ -140,13 +154,13 @@ TEST_CASE("the line for splice-capture says everything, and quotes for a shell")
     settings.height = 200;
     settings.camera.eye = {0.1, -2, 1.0 / 3};
     settings.sides = Sides::kTwoSided;
-    const std::string line = capture_line("it's.splice", settings, {glm::dvec3(1, 0.5, 0), false});
-    CHECK_THAT(line, Catch::Contains("'it'\\''s.splice'") && Catch::Contains("--size 300x200") &&
-                         Catch::Contains("--eye=0.1,-2,0.3333333333333333") && Catch::Contains("--fov 40") &&
-                         Catch::Contains("--two-sided") && Catch::Contains("'#ff8000'"));
+    const std::string line = capture_line({"it's.splice", "b c.ply"}, settings, {glm::dvec3(1, 0.5, 0), false});
+    CHECK_THAT(line, Catch::StartsWith("splice-capture 'it'\\''s.splice' 'b c.ply' -o") &&
+                         Catch::Contains("--size 300x200") && Catch::Contains("--eye=0.1,-2,0.3333333333333333") &&
+                         Catch::Contains("--fov 40") && Catch::Contains("--two-sided") && Catch::Contains("'#ff8000'"));
     settings.camera.orthographic = true;
     settings.camera.orthographic_height = 2.5;
-    CHECK_THAT(capture_line("a", settings, {}), Catch::Contains("--orthographic --height 2.5"));
+    CHECK_THAT(capture_line({"a"}, settings, {}), Catch::Contains("--orthographic --height 2.5"));
 }
 
 TEST_CASE("a saved scene reads back as the same scene") {
@@ -161,7 +175,9 @@ TEST_CASE("a saved scene reads back as the same scene") {
     shape.source = ShapeDescription{"torus-knot", {{"p", 2}, {"q", 5}}};
     shape.representation = SceneRepresentation::kSurfels;
     shape.max_spacing = 0.01;
-    shape.bake_members = {"representation", "max_spacing"};
+    shape.selection = SceneSelection::kThesis;
+    shape.sampling = 1.5;
+    shape.bake_members = {"representation", "selection", "sampling", "max_spacing"};
     shape.transform.rotation = glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, -1);  // half a turn
     scene.models = {file, shape};
     scene.camera = Camera{};
@@ -176,10 +192,19 @@ TEST_CASE("a saved scene reads back as the same scene") {
     scene.lighting.lights.push_back(point);
     scene.background.colour = glm::dvec3(32, 64, 128) / 255.0;
     scene.bookmarks = {{"front", *scene.camera}, {"a \"quoted\" name", Camera{}}};
-    scene.view = View::kNormals;
-    scene.sides = Sides::kOneSided;
-    scene.epsilon_scale = 0.7;
-    scene.prefilter = false;
+    scene.look.view = View::kNormals;
+    scene.look.shown = Shown::kTriangles;
+    scene.look.backend = Backend::kPoint;
+    scene.look.sides = Sides::kOneSided;
+    scene.look.epsilon_scale = 0.7;
+    scene.look.prefilter = false;
+    scene.look.merge_px = 1.25;
+    scene.look.tau = 2.5;
+    scene.levels_from = Camera{};
+    scene.comparison = {Comparison::kWipe, 0.25, {.view = View::kDepth, .shown = Shown::kSurfels, .antialias = 2}};
+    scene.lighting.highlight = HighlightModel::kPhong;
+    scene.lighting.rim = 0.3;
+    scene.lighting.rim_exponent = 5;
     scene.width = 77;
 
     const std::string text = write_scene(scene, "/models");
@@ -197,6 +222,9 @@ TEST_CASE("a saved scene reads back as the same scene") {
     CHECK(std::get<ShapeDescription>(back.models[1].source).parameters.at("q") == 5);
     CHECK(back.models[1].representation == SceneRepresentation::kSurfels);
     CHECK(back.models[1].max_spacing == 0.01);
+    CHECK(back.models[1].selection == SceneSelection::kThesis);
+    CHECK(back.models[1].sampling == 1.5);
+    CHECK(back.models[1].bake_members == shape.bake_members);
     REQUIRE(back.camera);
     CHECK(*back.camera == *scene.camera);
     REQUIRE(back.lighting.lights.size() == 2);
@@ -206,10 +234,22 @@ TEST_CASE("a saved scene reads back as the same scene") {
     REQUIRE(back.bookmarks.size() == 2);
     CHECK(back.bookmarks[1].name == "a \"quoted\" name");
     CHECK(back.bookmarks[0].camera == *scene.camera);
-    CHECK(back.view == View::kNormals);
-    CHECK(back.sides == Sides::kOneSided);
-    CHECK(back.epsilon_scale == 0.7);
-    CHECK_FALSE(back.prefilter);
+    CHECK(back.lighting == scene.lighting);
+    CHECK(back.look.view == View::kNormals);
+    CHECK(back.look.shown == Shown::kTriangles);
+    CHECK(back.look.backend == Backend::kPoint);
+    CHECK(back.look.sides == Sides::kOneSided);
+    CHECK(back.look.epsilon_scale == 0.7);
+    CHECK_FALSE(back.look.prefilter);
+    CHECK(back.look.merge_px == 1.25);
+    CHECK(back.look.tau == 2.5);
+    REQUIRE(back.levels_from);
+    CHECK(*back.levels_from == *scene.levels_from);
+    CHECK(back.comparison.kind == Comparison::kWipe);
+    CHECK(back.comparison.wipe == 0.25);
+    CHECK(back.comparison.right.view == View::kDepth);
+    CHECK(back.comparison.right.shown == Shown::kSurfels);
+    CHECK(back.comparison.right.antialias == 2);
     CHECK(back.width == 77);
 }
 

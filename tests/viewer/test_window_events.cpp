@@ -7,7 +7,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <string>
+#include <utility>
 
 using namespace splice;
 using namespace splice::test;
@@ -87,6 +89,32 @@ TEST_CASE("on a monitor of another scale, panels and letters follow, and come ba
     const auto lists = [&](const char* name) { return cropped(read_png(stage.folder / name), 0, 0, kPanel, 200); };
     CHECK(difference(lists("back-window.png"), lists("one-window.png")) == 0);
     CHECK(difference(lists("larger-window.png"), lists("one-window.png")) > 0.05);
+}
+
+TEST_CASE("on a scaled monitor a window has the size that it was left with, each time it is started") {
+    const Stage stage(40);
+    if (!stage.display) return;
+    const auto& [display, folder] = stage;
+    display->set_dots_per_inch(144);
+    const auto start_and_close = [&](unsigned width, unsigned height) {
+        RunningViewer viewer(folder.path(), display->name(), {"knot.ply", "--device", "cpu"});
+        stage.wait_for("knot.ply");
+        const Picture started = display->still_picture();
+        if (width > 0) {
+            display->resize(width, height);
+            display->picture_when([&](const Picture& now) { return now.width == width; });
+        }
+        display->ask_to_close();
+        CHECK(viewer.wait() == 0);
+        CHECK(viewer.err() == "");
+        return std::pair{started.width, started.height};
+    };
+    std::filesystem::create_directories(folder / "splice");
+    write_text(folder / "splice" / "view.json", R"({"width": 600, "height": 400})");
+    CHECK(start_and_close(0, 0) == std::pair{900U, 600U});
+    CHECK(start_and_close(1050, 750) == std::pair{900U, 600U});
+    CHECK(start_and_close(0, 0) == std::pair{1050U, 750U});
+    CHECK(start_and_close(0, 0) == std::pair{1050U, 750U});
 }
 
 TEST_CASE("as small as a window gets, it waits and comes back") {

@@ -2,6 +2,7 @@
 
 #include "tests/viewer/drag_and_drop.h"
 
+#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
@@ -309,12 +310,51 @@ void VirtualDisplay::say_minimised(bool minimised) {
     settle();
 }
 
+// As any program that pastes: the selection's owner is asked to leave the text with a window of ours (ICCCM 2.4).
+std::optional<std::string> VirtualDisplay::clipboard(double seconds) const {
+    Display* display = connection_->display;
+    const Window window = XCreateSimpleWindow(display, DefaultRootWindow(display), 0, 0, 1, 1, 0, 0, 0);
+    const Atom text = XInternAtom(display, "UTF8_STRING", False), here = XInternAtom(display, "PASTED", False);
+    XConvertSelection(display, XInternAtom(display, "CLIPBOARD", False), text, here, window, CurrentTime);
+    std::optional<std::string> pasted;
+    const auto start = Clock::now();
+    for (bool answered = false; !answered && since(start) < seconds;) {
+        XSync(display, False);
+        XEvent event{};
+        while (XCheckTypedWindowEvent(display, window, SelectionNotify, &event) != 0) {
+            answered = true;
+            Atom type = 0;
+            int format = 0;
+            unsigned long count = 0, left = 0;
+            unsigned char* bytes = nullptr;
+            constexpr long most = 1 << 20;
+            if (event.xselection.property == here &&
+                XGetWindowProperty(display, window, here, 0, most, True, text, &type, &format, &count, &left, &bytes) ==
+                    Success &&
+                type == text && bytes != nullptr)
+                pasted = std::string(reinterpret_cast<const char*>(bytes), count);
+            if (bytes != nullptr) XFree(bytes);
+        }
+        if (!answered) sleep_seconds(0.01);
+    }
+    XDestroyWindow(display, window);
+    return pasted;
+}
+
 bool VirtualDisplay::drop(const std::filesystem::path& file, int x, int y) {
     Display* display = connection_->display;
     int root_x = 0, root_y = 0;
     Window child = 0;
     XTranslateCoordinates(display, connection_->window, DefaultRootWindow(display), x, y, &root_x, &root_y, &child);
     return drop_file(display, connection_->window, "file://" + file.string(), root_x, root_y);
+}
+
+void VirtualDisplay::set_dots_per_inch(int dots) {
+    Display* display = connection_->display;
+    const std::string resources = "Xft.dpi:\t" + std::to_string(dots) + "\n";
+    XChangeProperty(display, DefaultRootWindow(display), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(resources.data()), static_cast<int>(resources.size()));
+    settle();
 }
 
 void VirtualDisplay::ask_to_close() {

@@ -48,8 +48,12 @@ class VirtualDisplay {
     void resize(unsigned width, unsigned height, double seconds_after = 0.05);
     /// What a window manager says of a window that it hides, or shows again.
     void say_minimised(bool minimised);
+    /// What is on the clipboard, as another program gets it; nothing if nobody gives it in time.
+    std::optional<std::string> clipboard(double seconds = 30) const;
     /// True if the window took the files.
     bool drop(const std::filesystem::path& file, int x, int y);
+    /// What desktops say of the monitor's scale (96 times it), to programs that start later.
+    void set_dots_per_inch(int dots);
     void ask_to_close();
     /// What no program should do to another's window.
     void destroy_window();

@@ -11,8 +11,13 @@ namespace splice {
 namespace {
 
 // Over the viewer's other shoulder, from the sides, below, above, and from behind, where it draws outlines.
-constexpr std::array<std::array<double, 3>, 7> kDirections{
-    {{-0.8, -0.3, -0.6}, {1, 0, -0.2}, {-1, 0, -0.2}, {0, 1, -0.3}, {0, -1, -0.2}, {-0.9, -0.2, 0.4}, {0.9, -0.2, 0.4}}};
+constexpr std::array<std::array<double, 3>, 7> kDirections{{{-0.8, -0.3, -0.6},
+                                                            {1, 0, -0.2},
+                                                            {-1, 0, -0.2},
+                                                            {0, 1, -0.3},
+                                                            {0, -1, -0.2},
+                                                            {-0.9, -0.2, 0.4},
+                                                            {0.9, -0.2, 0.4}}};
 constexpr std::array kStrengths{0.5, 0.4, 0.3, 0.2, 0.1, 0.05};
 constexpr int kNormals = 400;
 

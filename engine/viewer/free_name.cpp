@@ -13,8 +13,7 @@ std::filesystem::path first_free(const std::filesystem::path& path,
                                  const std::function<bool(const std::filesystem::path&)>& taken) {
     std::filesystem::path candidate = path;
     for (std::size_t i = 1; taken(candidate); ++i)
-        candidate =
-            path.parent_path() / (path.stem().string() + "-" + std::to_string(i) + path.extension().string());
+        candidate = path.parent_path() / (path.stem().string() + "-" + std::to_string(i) + path.extension().string());
     return candidate;
 }
 

@@ -122,10 +122,12 @@ void draw_view_section(PanelContext& context) {
     if (state.reduce_while_moving) {
         edit_number("Budget", state.moving_budget_ms, 5, 200, "%.0f ms");
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("What a frame may take while the camera moves");
-        edit_number("Most tau", state.moving_most_tau, 0, static_cast<float>(MovingDetail::kCoarsest), "%.0f px moving");
+        edit_number("Most tau", state.moving_most_tau, 0, static_cast<float>(MovingDetail::kCoarsest),
+                    "%.0f px moving");
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("How coarse levels of detail may grow while the camera moves, where half the pixels a\n"
-                              "side take longer than the budget; 0: they stay as at rest");
+            ImGui::SetTooltip(
+                "How coarse levels of detail may grow while the camera moves, where half the pixels a\n"
+                "side take longer than the budget; 0: they stay as at rest");
     }
     if (!state.scene) return;
     Background& background = state.scene->loaded.scene.background;

@@ -186,7 +186,8 @@ void Viewer::loop() {
             const double rate = 1 / std::max(frame, 1e-4);
             measured_.frames_per_second += (rate - measured_.frames_per_second) * 0.1;
         }
-        if (state_.reduce_while_moving && moving()) moving_detail_.took(frame * 1000, state_.moving_budget_ms, state_.moving_most_tau);
+        if (state_.reduce_while_moving && moving())
+            moving_detail_.took(frame * 1000, state_.moving_budget_ms, state_.moving_most_tau);
         if (state_.first_picture_s == 0) {
             note_start(state_.scene ? "first picture" : "first frame");
             if (state_.scene) state_.first_picture_s = start_steps_.back().second;

@@ -59,8 +59,9 @@ struct ViewerState {
     double wipe = 0.5;  // share of the picture that is left of the line
     bool reduce_while_moving = true;
     double moving_budget_ms = MovingDetail::kTargetMs;  // of a frame while the camera moves
-    double moving_most_tau = MovingDetail::kCoarsest;   // pixels of the picture as drawn, while the camera moves; 0: held
-    bool freeze_cut = false;                            // levels of detail stay those of `cut_camera`
+    double moving_most_tau =
+        MovingDetail::kCoarsest;  // pixels of the picture as drawn, while the camera moves; 0: held
+    bool freeze_cut = false;      // levels of detail stay those of `cut_camera`
     std::optional<Camera> cut_camera;
 
     // The camera.

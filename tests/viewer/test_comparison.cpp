@@ -18,8 +18,8 @@ using namespace splice::test;
 
 namespace {
 
-constexpr std::uint32_t kLine = 3;                     // pixels beside the line that it may cover
-constexpr std::uint32_t kCaptions = 40;                // at the bottom of the pictures
+constexpr std::uint32_t kLine = 3;       // pixels beside the line that it may cover
+constexpr std::uint32_t kCaptions = 40;  // at the bottom of the pictures
 
 std::size_t pixels_of(const Picture& picture, const std::array<int, 3>& colour) {
     std::size_t count = 0;

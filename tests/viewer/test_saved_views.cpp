@@ -76,7 +76,8 @@ TEST_CASE("the copied command line is on the clipboard") {
     const std::optional<std::string> line = stage.display->clipboard();
     REQUIRE(line);
     stage.display->key("p");
-    stage.display->picture_when([&](const Picture&) { return std::filesystem::exists(stage.folder / "splice-view.png"); });
+    stage.display->picture_when(
+        [&](const Picture&) { return std::filesystem::exists(stage.folder / "splice-view.png"); });
     CHECK(difference(captured_by(stage.folder.path(), *line), read_png(stage.folder / "splice-view.png")) == 0);
     stage.display->ask_to_close();
     CHECK(viewer.wait() == 0);

@@ -19,13 +19,12 @@ TEST_CASE("actions that fail are told with file and line, what follows is done, 
         const char* script;
         const char* said;
     };
-    for (const Failing& failing :
-         {Failing{"wait\nset epsilon 1000\n", "line 2: set epsilon: expected a number from 0"},
-          Failing{"wait\nopen missing.ply\nwait\n", "line 2: cannot read missing.ply"},
-          Failing{"wait\n\ndrop broken.ply\nwait\n", "line 3: broken.ply"},
-          Failing{"wait\nscreenshot nowhere/a.png\n", "line 2: nowhere/a.png"},
-          Failing{"wait\nturntable 3 nowhere/a.png\nwait\n", "line 2: nowhere/a-000.png"},
-          Failing{"wait\ngo home\n", "line 2: no bookmark \"home\""}}) {
+    for (const Failing& failing : {Failing{"wait\nset epsilon 1000\n", "line 2: set epsilon: expected a number from 0"},
+                                   Failing{"wait\nopen missing.ply\nwait\n", "line 2: cannot read missing.ply"},
+                                   Failing{"wait\n\ndrop broken.ply\nwait\n", "line 3: broken.ply"},
+                                   Failing{"wait\nscreenshot nowhere/a.png\n", "line 2: nowhere/a.png"},
+                                   Failing{"wait\nturntable 3 nowhere/a.png\nwait\n", "line 2: nowhere/a-000.png"},
+                                   Failing{"wait\ngo home\n", "line 2: no bookmark \"home\""}}) {
         INFO(failing.script);
         std::filesystem::remove(stage.folder / "after.png");
         const auto [code, err] =

@@ -194,16 +194,21 @@ void check_growth(int frames) {
     REQUIRE(viewer.wait(900) == 0);
     const auto before = nlohmann::json::parse(read_text(stage.folder / "before.json"));
     const auto after = nlohmann::json::parse(read_text(stage.folder / "after.json"));
+    // The address sanitizer has a heap of its own: the C library's is empty, and memory that is freed is kept.
     const auto growth = [&](const char* name) {
+#ifndef __SANITIZE_ADDRESS__
         REQUIRE(before.at(name).get<std::int64_t>() > 0);
+#endif
         return after.at(name).get<std::int64_t>() - before.at(name).get<std::int64_t>();
     };
     WARN(frames << " frames: device " << growth("device_bytes") << ", heap " << growth("heap_bytes") << ", resident "
                 << growth("resident_bytes") << " bytes, open files " << growth("open_files"));
     CHECK(growth("open_files") == 0);
     CHECK(growth("device_bytes") == 0);
+#ifndef __SANITIZE_ADDRESS__
     CHECK(growth("heap_bytes") < 512 << 10);
     CHECK(growth("resident_bytes") < 4 << 20);
+#endif
 }
 
 }  // namespace

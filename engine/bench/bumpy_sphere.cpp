@@ -1,5 +1,6 @@
 #include "engine/bench/bumpy_sphere.h"
 
+#include "preprocess/build_model/normal_cone.h"
 #include "preprocess/mesh/shapes.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
@@ -7,8 +8,10 @@
 #include "preprocess/surfel/morton.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace splice::bench {
 
@@ -60,6 +63,21 @@ format::Surfel surfel_of(const Sample& sample, double depth) {
     return surfel;
 }
 
+// As of a bake, so that patches that face away are left out, whatever draws the others.
+void enclose_patch_normals(Model& model) {
+    for (format::Patch& patch : model.patches) {
+        std::vector<Vec3f> normals;
+        for (std::uint32_t i = 0; i < patch.surfel_count; ++i) {
+            const std::array<float, 3> n = decode_octahedral(model.surfels[patch.first_surfel + i].normal);
+            normals.emplace_back(n[0], n[1], n[2]);
+        }
+        const NormalCone cone = enclose_normals(normals);
+        for (int axis = 0; axis < 3; ++axis)
+            patch.cone_axis[axis] = cone.axis[axis];
+        patch.cone_cos = cone.cosine;
+    }
+}
+
 }  // namespace
 
 Model bumpy_sphere(std::uint32_t count, double depth) {
@@ -74,8 +92,6 @@ Model bumpy_sphere(std::uint32_t count, double depth) {
             patch.representation = format::Representation::kSurfels;
             std::fill_n(patch.bounds_min, 3, 1e30f);
             std::fill_n(patch.bounds_max, 3, -1e30f);
-            patch.cone_axis[2] = 1;
-            patch.cone_cos = -1;
             patch.lod_count = 1;
             patch.first_surfel = model.surfels.size();
             model.patches.push_back(patch);
@@ -94,6 +110,7 @@ Model bumpy_sphere(std::uint32_t count, double depth) {
         ++patch.surfel_count;
         model.surfels.push_back(surfel);
     }
+    enclose_patch_normals(model);
     return model;
 }
 

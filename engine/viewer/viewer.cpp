@@ -281,6 +281,10 @@ void Viewer::show_scene(const SceneRequest& request, PreparedScene prepared) {
             if (scene->prepared.models[i]->baked()) state_.bake = bake_of(description.models[i]);
         // Files without a say leave the window's settings.
         if (scene->prepared.from_scene_file) take_looks(description);
+        // As splice-capture's options go before a scene's; scenes that are opened later are shown as they say.
+        if (options_.merge_px && !state_.scene)
+            for (CaptureSettings& look : state_.looks)
+                look.merge_px = *options_.merge_px;
         if (!description.levels_from) state_.freeze_cut = false;
     } else if (state_.scene) {
         // The same scene, baked anew: what was set in the window stays.

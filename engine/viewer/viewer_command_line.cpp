@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
+#include <cmath>
 
 namespace splice {
 
@@ -52,6 +53,7 @@ std::optional<ViewerCommandLine> parse_viewer_command_line(int argc, const char*
     ViewerCommandLine command;
     std::string size, present_mode, script, shaders;
     double megabytes = 0;  // 0: all
+    double merge_px = -1;  // less than 0: not given
     std::vector<std::string> inputs;
     CLI::App app(kAbout, "splice-view");
     app.footer(kExamples);
@@ -71,6 +73,12 @@ std::optional<ViewerCommandLine> parse_viewer_command_line(int argc, const char*
            "Hold at most so much of surfels; the others stay in the model file and are read as pictures need them")
         ->option_text("MB")
         ->check(CLI::Range(1.0, 1e9));
+    app.add_option(
+           "--merge", merge_px,
+           "Surfels of a patch become fewer where that moves none by more than so many pixels, 0 to 64; default "
+           "0.5; 0: every surfel is drawn")
+        ->option_text("PIXELS")
+        ->check(CLI::Range(0.0, kMostMergePixels));
     app.add_option("--script", script, "Actions to do, one a line (docs/viewer.md); - is standard input")
         ->option_text("FILE");
     app.add_option("--shaders", shaders, "Folder of GLSL sources (shaders/glsl) to compile anew when one changes")
@@ -78,9 +86,13 @@ std::optional<ViewerCommandLine> parse_viewer_command_line(int argc, const char*
     app.add_flag("--validate", command.renderer.validate,
                  "Run with the Vulkan validation layers; any message fails the run at its end");
     if (!parse_command_line(app, argc, argv)) return std::nullopt;
+    // No range excludes what compares with nothing.
+    for (const auto& [option, value] : {std::pair("--memory", megabytes), std::pair("--merge", merge_px)})
+        if (std::isnan(value)) throw UsageError(std::string(option) + ": expected a number, got \"nan\"");
     if (!size.empty()) command.size = parse_window_size(size);
     if (!present_mode.empty()) command.present_mode = parse_present_mode(present_mode);
     if (megabytes > 0) command.memory = static_cast<std::uint64_t>(megabytes * 1024 * 1024);
+    if (merge_px >= 0) command.merge_px = merge_px;
     if (!script.empty()) command.script = script;
     if (!shaders.empty()) command.shaders = shaders;
     command.inputs.assign(inputs.begin(), inputs.end());

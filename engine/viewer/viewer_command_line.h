@@ -20,6 +20,7 @@ struct ViewerCommandLine {
     std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  // screen coordinates
     std::optional<std::filesystem::path> script, shaders;
     std::optional<std::uint64_t> memory;  // bytes of surfels that are held at most
+    std::optional<double> merge_px;       // CaptureSettings::merge_px of what is opened first
 };
 
 /// Nothing when --help or --version was asked for and printed. Throws UsageError.

@@ -58,6 +58,9 @@ Viewer::Viewer(const ViewerCommandLine& command)
     state_.looks[1].shown = Shown::kTriangles;
     // Scripts do the same for everybody.
     if (!command.script) apply_settings(read_settings(), state_);
+    if (command.merge_px)
+        for (CaptureSettings& look : state_.looks)
+            look.merge_px = *command.merge_px;
     if (command.present_mode) state_.present_mode = *command.present_mode;
     if (command.shaders) shaders_.emplace(*command.shaders);
     graphics_.emplace(window_, instance_, command.renderer.device, state_.present_mode);

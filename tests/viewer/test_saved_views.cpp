@@ -63,6 +63,24 @@ TEST_CASE("the copied command line makes the same picture of several files, and 
     CHECK(difference(read_png(folder / "thesis.png"), read_png(folder / "dense.png")) > 0.005);
 }
 
+TEST_CASE("merging of the command line goes before what the first scene says, not before those that are opened later") {
+    const Stage stage(40);
+    if (!stage.display) return;
+    write_text(stage.folder / "merged.json", R"({"models": [{"file": "knot.ply"}], "render": {"merge": 2}})");
+    const auto [code, err] =
+        stage.run_script("wait\ncamera-line first.txt\nopen merged.json\nwait\ncamera-line later.txt\nquit\n",
+                         "600x400", {"merged.json", "--merge", "4"});
+    CHECK(code == 0);
+    CHECK(err == "");
+    CHECK_THAT(read_text(stage.folder / "first.txt"), Catch::Contains("--merge 4 "));
+    CHECK_THAT(read_text(stage.folder / "later.txt"), Catch::Contains("--merge 2 "));
+    const auto mesh = stage.run_script("wait\ncamera-line mesh.txt\nset edited right\ncamera-line right.txt\nquit\n",
+                                       "600x400", {"knot.ply", "--merge", "0"});
+    CHECK(mesh.code == 0);
+    for (const char* name : {"mesh.txt", "right.txt"})
+        CHECK_THAT(read_text(stage.folder / name), Catch::Contains("--merge 0 "));
+}
+
 TEST_CASE("the copied command line is on the clipboard") {
     const Stage stage(40);
     if (!stage.display) return;

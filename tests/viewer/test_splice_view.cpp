@@ -227,7 +227,8 @@ TEST_CASE("usage: what is not understood ends the run with 2 before a window ope
         std::string said;
     };
     for (const Wrong& wrong : {Wrong{{"--present-mode", "fast"}, "--present-mode"}, Wrong{{"--size", "0x3"}, "--size"},
-                               Wrong{{"--nonsense"}, "--nonsense"}}) {
+                               Wrong{{"--merge", "65"}, "--merge"}, Wrong{{"--merge", "nan"}, "--merge"},
+                               Wrong{{"--memory", "nan"}, "--memory"}, Wrong{{"--nonsense"}, "--nonsense"}}) {
         const Outcome outcome = run({program("splice-view"), wrong.arguments});
         CHECK(outcome.exit_code == 2);
         CHECK(line_count(outcome.err) == 1);

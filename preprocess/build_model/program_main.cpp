@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <new>
@@ -47,6 +49,19 @@ void refuse_flag_values(CLI::App& app) {
         refuse_flag_values(*command);
 }
 
+// Ranges let NaN through, which compares with nothing, and options without a range infinity, too.
+std::string check_finite(const std::string& text) {
+    return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : "'" + text + "' is not a finite number";
+}
+
+// CLI11 names the type of floating-point options so, unless they are given another name.
+void refuse_infinite_numbers(CLI::App& app) {
+    for (CLI::Option* option : app.get_options())
+        if (option->get_type_name().starts_with("FLOAT")) option->check(check_finite);
+    for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+        refuse_infinite_numbers(*command);
+}
+
 }  // namespace
 
 int run_program(const std::string& program, const std::function<int()>& body) {
@@ -70,6 +85,7 @@ int run_program(const std::string& program, const std::function<int()>& body) {
 
 bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
     refuse_flag_values(app);
+    refuse_infinite_numbers(app);
     try {
         app.parse(argc, argv);
         return true;

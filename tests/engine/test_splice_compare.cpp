@@ -137,7 +137,9 @@ TEST_CASE("splice-compare tells a wrong command line from a wrong file") {
                                                {"a.png", "a.png", "--erode", "-1"},
                                                {"a.png", "a.png", "--background", "beige"},
                                                {"a.png", "a.png", "--diff", "a.png"},
-                                               {"a.png", "a.png", "--min-psnr", "x"}}) {
+                                               {"a.png", "a.png", "--min-psnr", "x"},
+                                               {"a.png", "a.png", "--min-psnr", "nan"},
+                                               {"a.png", "a.png", "--erode", "nan"}}) {
         const Outcome outcome = compare(folder, arguments);
         CHECK(outcome.exit_code == 2);
         CHECK(line_count(outcome.err) == 1);

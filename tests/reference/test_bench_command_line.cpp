@@ -87,7 +87,11 @@ TEST_CASE("splice-bench answers a wrong command line with one line and exit code
                                   "quality --shading cel",
                                   "quality --antialias 0",
                                   "capture --antialias 9",
-                                  "quality --depth 0"}) {
+                                  "quality --depth 0",
+                                  "quality --depth nan",
+                                  "frame --merge nan",
+                                  "costs --tau 1,nan",
+                                  "capture --sagitta nan"}) {
         INFO(arguments);
         const Outcome outcome = bench(arguments);
         CHECK(outcome.exit_code == 2);

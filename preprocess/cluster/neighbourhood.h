@@ -5,6 +5,7 @@
 #include "preprocess/vector_width.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 namespace splice {
@@ -23,6 +24,9 @@ struct Cell {
 struct Neighbourhood {
     float ball, sheet, triangles;
 };
+
+/// How many centres the widest vectors hold.
+inline constexpr std::uint32_t kCentresAtOnce = 8;
 
 using CellRuns = std::array<std::span<const Cell>, 9>;
 

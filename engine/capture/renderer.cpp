@@ -65,6 +65,8 @@ double milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
+constexpr double kSmallBox = 80;  // pixels: see node_boxes()
+
 constexpr std::uint64_t kTexelBytes = 4;  // of both picture formats
 
 std::array<VkBufferImageCopy, 1> whole_image(const CaptureSettings& settings) {
@@ -170,6 +172,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
         .small_px = backend.small_px,
+        .boxes_px = view == View::kBoxes ? kSmallBox * antialias : 0,
         .merge_px = view == View::kSamples ? 0 : settings.merge_px,
         .tau = settings.tau * antialias,
         .costs = settings.costs};

@@ -20,6 +20,7 @@ FramePasses::FramePasses(gpu::Device& device, std::uint64_t most_splat_groups)
       surfel_attribute(device, data),
       splats(device, data, most_splat_groups),
       surfel_normalise(device, data),
+      boxes(device, data),
       resolve(device, data) {}
 
 VkFormat picture_format(View view) {
@@ -79,6 +80,7 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
         passes.surfel_attribute.add(graph, targets, settings, draws);
         passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kStencil);
     }
+    if (settings.view == View::kBoxes) passes.boxes.add(graph, targets, settings, draws);
     if (!several) return targets.picture;
     const graph::ImageHandle picture = graph.create_image("picture", {.format = picture_format(settings.view),
                                                                       .width = settings.width / settings.antialias,

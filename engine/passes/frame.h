@@ -1,6 +1,7 @@
 // The frame of the hybrid pipeline (thesis 3.4, 4.3): triangles and surfels spliced in one depth buffer.
 #pragma once
 
+#include "engine/passes/box_pass.h"
 #include "engine/passes/frame_data.h"
 #include "engine/passes/resolve_pass.h"
 #include "engine/passes/splat_passes.h"
@@ -38,6 +39,7 @@ struct FramePasses {
     SurfelAttributePass surfel_attribute;
     SplatPasses splats;
     SurfelNormalisePass surfel_normalise;
+    BoxPass boxes;
     ResolvePass resolve;
 };
 

@@ -93,8 +93,8 @@ SplatPasses::SplatPasses(gpu::Device& device, const FrameData& data, std::uint64
 
 std::optional<Techniques> SplatPasses::choose(Backend wanted, const FrameSettings& settings) const {
     if (!supported_ || wanted == Backend::kSprite) return std::nullopt;
-    // The visibility view shows the depth buffer, which tiles alone do not write.
-    const bool tiles = tiles_supported_ && settings.view != View::kVisibility;
+    // Tiles alone do not write the depth buffer, which these views show or test.
+    const bool tiles = tiles_supported_ && settings.view != View::kVisibility && settings.view != View::kBoxes;
     const bool points = tiles_supported_ && point_bytes(settings) <= device_.limits().maxStorageBufferRange;
     Technique others = Technique::kRaster;
     if (wanted == Backend::kTile || (wanted == Backend::kAuto && device_.info().is_cpu())) {

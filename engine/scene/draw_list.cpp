@@ -25,9 +25,17 @@ class Culler {
           seen_(camera, width, height, draws.model_to_view, draws.scale) {}
 
     void visit_all() {
+        drawn_.assign(draws_.model->patches().size(), false);
         if (groups()) choose_groups();
         if (groups_.chosen.empty() || !groups_.chosen.front()) visit_rest();
         draws_.cut.statistics.groups_by_triangles = groups_.groups.size();
+        if (options_.boxes_px == 0) return;
+        draws_.boxes = node_boxes({.octree = draws_.model->octree(),
+                                   .hierarchy = draws_.model->hierarchy(),
+                                   .groups = groups_.chosen,
+                                   .patches = drawn_,
+                                   .cut = draws_.cut},
+                                  seen_, options_.boxes_px);
     }
 
   private:
@@ -163,11 +171,13 @@ class Culler {
             draws_.load += PatchView::load_of_triangles(level, pixels_of(patch, extent.nearest), draws_.two_sided);
             append(draws_.triangles, {level.first_index, level.index_count, patch.material, index},
                    options_.merge_patches);
+            drawn_[index] = true;
             return;
         }
         if (patch.surfel_count == 0) return;
         draws_.load.splat_pixels += pixels_of(patch, extent.nearest);
         if (cuts()) return;
+        drawn_[index] = true;
         const MergedRange drawn = surfels_of(index, extent);
         draws_.load.splats += static_cast<double>(drawn.count);
         const double largest = largest_splat(patch.max_surfel_radius + drawn.growth, extent.nearest);
@@ -220,6 +230,7 @@ class Culler {
     InstanceDraws& draws_;
     PatchView seen_;
     PatchGroups groups_;
+    std::vector<bool> drawn_;         // patches, one by one
     std::vector<bool> by_triangles_;  // surfel patches, where the cut chose
 };
 

@@ -7,6 +7,7 @@
 #include "engine/scene/draw_costs.h"
 #include "engine/scene/lod_cut.h"
 #include "engine/scene/named.h"
+#include "engine/scene/node_boxes.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/splat_reach.h"
 
@@ -52,6 +53,7 @@ struct InstanceDraws {
     std::vector<DrawRange> sprites;  // surfels that fit a point: small, and wholly inside the frustum
     std::vector<DrawRange> quads;    // the others
     std::vector<DrawRange> small;    // instead of either: those of DrawListOptions::small_px
+    std::vector<NodeBox> boxes;      // with DrawListOptions::boxes_px: of what is drawn
     LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; CutStore makes ranges of it
     DrawLoad load = {};
     MergedCounts merged;
@@ -83,6 +85,7 @@ struct DrawListOptions {
     bool force_quads = false;
     double max_point_size = 255;       // pixels, of the device
     double small_px = 0;               // patches whose splats are all at most this wide go to InstanceDraws::small
+    double boxes_px = 0;               // pixels: fill InstanceDraws::boxes, see node_boxes(); 0: none
     double merge_px = 0;               // pixels by which merged surfels may differ (MergedRange::growth); 0: none are
     double tau = 0;                    // pixels, of the cut (lod_cut.h); 0: full detail
     DrawCosts costs = kSoftwareCosts;  // with tau, surfel patches are drawn by their triangles where those cost less

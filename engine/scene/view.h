@@ -22,9 +22,10 @@ enum class View : std::uint32_t {
     kTrianglesOnly = 10,  // (4.11 c)
     kSurfelsOnly = 11,    // (4.11 d)
     kLevels = 12,         // levels of detail: depths in the point tree, levels of triangles
+    kBoxes = 13,          // of the nodes that are drawn
 };
 
-inline constexpr Names<View, 13> kViewNames{{
+inline constexpr Names<View, 14> kViewNames{{
     {View::kShaded, "shaded", "the picture"},
     {View::kDepth, "depth", "distance to the surface, near is bright"},
     {View::kVisibility, "visibility", "depth buffer after the visibility pass, moved back by epsilon"},
@@ -38,6 +39,7 @@ inline constexpr Names<View, 13> kViewNames{{
     {View::kTrianglesOnly, "triangles-only", "triangle patches alone"},
     {View::kSurfelsOnly, "surfels-only", "surfel patches alone"},
     {View::kLevels, "levels", "what --tau chose: a colour for each level of the tree, grey for full detail"},
+    {View::kBoxes, "boxes", "boxes of the nodes that are drawn, a colour for each level, over the surface in grey"},
 }};
 
 constexpr std::string_view name_of(View view) {

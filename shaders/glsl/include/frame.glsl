@@ -25,6 +25,7 @@ const uint VIEW_WIREFRAME = 7;
 const uint VIEW_OVERLAP = 8;
 const uint VIEW_SAMPLES = 9;
 const uint VIEW_LEVELS = 12;
+const uint VIEW_BOXES = 13;
 
 layout(set = 0, binding = 0, std140) uniform FrameUniforms {
     mat4 projection;       // view space to clip space, y down, reversed depth

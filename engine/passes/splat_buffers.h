@@ -18,7 +18,7 @@ namespace splice {
 /// Of tile.glsl, by the same names: pixels; surfels; splats; texels a splat; words of a mask; groups of a cell.
 inline constexpr std::uint32_t kTileWidth = 8, kTileHeight = 4;
 inline constexpr std::uint32_t kTileGroup = 64, kTileBlock = 8, kTileRecordTexels = 4;
-inline constexpr std::uint32_t kTileSegmentWords = 16, kTileFusedGroups = 288;
+inline constexpr std::uint32_t kTileSegmentWords = 8, kTileFusedGroups = 264;
 /// local_size_x of tile_cells.comp.
 inline constexpr std::uint32_t kTileCellsGroup = 64;
 

@@ -1,8 +1,9 @@
 // Tile backend: visibility and attributes of a tile's pixels, gathered from the blocks that touch it: what
 // surfel_visibility.frag and surfel_attribute.frag compute (thesis 3.4.2), with the loops turned inside out. An
-// invocation has a column of the tile. Splats are read as many at once as there are invocations, one each, and brought
-// into the tile's coordinates; then those that touch the tile are handed round one by one. All that a pixel needs of a
-// splat is affine in the pixel (splat.glsl): rows are reached by addition.
+// invocation has a column of the tile. The splats that touch the tile are listed first, two of a block of eight where
+// they are small. They are read as many at once as there are invocations, one each, and brought into the tile's
+// coordinates; then they are handed round one by one. All that a pixel needs of a splat is affine in the pixel
+// (splat.glsl): rows are reached by addition.
 //
 // Loops test at their end: a device that runs invocations in lockstep and masks those that have left a loop would run
 // the body once more for nobody.
@@ -53,6 +54,8 @@ const uint MOST_GROUPS = max(FUSED_GROUPS, 32 * SEGMENT_WORDS);
 // Blocks that touch the tile: those of flat splats from the front, the others from the back.
 shared uint touching[MOST_GROUPS * BLOCKS];
 const uint LAST_TOUCHING = MOST_GROUPS * BLOCKS - 1;
+// Numbers of splats that touch the tile: flat ones, then the others.
+shared uint listed[2 * MOST_LISTED];
 
 struct Found {
     uint flat_blocks, solid_blocks;
@@ -119,7 +122,7 @@ vec2 centre_of(Tile tile) {
 const int FLAT = 0, SOLID = 1, CLOSE_SOLID = 2, CUT_DISK = 3;
 const int SOLIDS = CELLS == CELLS_CLOSE || CELLS == CELLS_SEGMENTED ? CLOSE_SOLID : SOLID;
 
-// A splat of a block, one an invocation.
+// One an invocation.
 struct TileSplat {
     SplatPlace place;
     SplatPlane splat;
@@ -131,9 +134,9 @@ struct TileSplat {
     uint number;
 };
 
-TileSplat read_splat(uint block, const int kind, Tile tile) {
+TileSplat read_splat(uint number, const int kind, Tile tile) {
     TileSplat mine;
-    mine.number = block * BLOCK + gl_LocalInvocationID.x;
+    mine.number = number;
     const int texel = int(mine.number * RECORD_TEXELS), solid_texel = int(tiles.first_solid + 2 * mine.number);
     mine.place = unpack_place(texelFetch(record_texels, texel));
     mine.splat = unpack_plane(texelFetch(record_texels, texel + 1), texelFetch(record_texels, texel + 2));
@@ -181,10 +184,52 @@ Meeting meet(PixelPlane at, const int kind, MetSplat splat, float past_clip) {
     return meeting;
 }
 
-void see_block(uint block, const int kind, inout Tile tile) {
+// Splats that touch the tile, of one list of blocks. They are in order, and where there is no room for all of them, they come
+// one run of blocks after the other.
+struct TileList {
+    uint blocks;
+    uint begin, end;  // of the blocks whose splats are listed
+    uint count;       // of splats
+};
+
+uint place_in_list(const int kind, uint n) {
+    return kind == FLAT ? n : MOST_LISTED + n;
+}
+
+// Lists what comes next; after the last run the first. What is whole stays.
+void list_next(const int kind, inout TileList list, Tile tile) {
+    const uint lane = gl_LocalInvocationID.x;
+    const bool whole = list.begin == 0 && list.end == list.blocks;
+    list.begin = list.end < list.blocks ? list.end : 0;
+    list.count = whole ? list.count : 0;
+    uint n = whole ? list.blocks : list.begin;
+    subgroupBarrier();
+    do {
+        // Every invocation reads a block's number.
+        const uint own = min(n + lane, list.blocks - 1);
+        const uint block_of_own = touching[kind == FLAT ? own : LAST_TOUCHING - own];
+        const uint end = min(list.blocks - n, gl_WorkGroupSize.x);
+        uint i = 0;
+        do {
+            const uint number = subgroupShuffle(block_of_own, i) * BLOCK + lane;
+            const SplatPlace place = unpack_place(texelFetch(record_texels, int(number * RECORD_TEXELS)));
+            const bool touches = i < end && touches_tile(place, centre_of(tile));
+            const uvec4 all = subgroupBallot(touches);
+            if (touches) listed[place_in_list(kind, list.count + subgroupBallotExclusiveBitCount(all))] = number;
+            list.count += subgroupBallotBitCount(all);
+        } while (++i < end);
+        n = min(n + gl_WorkGroupSize.x, list.blocks);
+    } while (n < list.blocks && list.count + gl_WorkGroupSize.x * BLOCK <= MOST_LISTED);
+    list.end = n;
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+}
+
+void see_splats(uint first, uint count, const int kind, inout Tile tile) {
     const float column = float(gl_LocalInvocationID.x);
-    const TileSplat mine = read_splat(block, kind, tile);
-    uint left = subgroupBallot(touches_tile(mine.place, centre_of(tile))).x;
+    const uint own = first + gl_LocalInvocationID.x;
+    const TileSplat mine = read_splat(listed[place_in_list(kind, min(own, count - 1))], kind, tile);
+    uint left = subgroupBallot(own < count).x;
     if (left != 0) do {
             const uint i = findLSB(left);
             left &= left - 1;
@@ -227,9 +272,10 @@ void add_part(float part, float weight, float z, vec3 colour, vec3 albedo, int r
 }
 
 // `lacking`: where next to nothing was painted, what is met beside disks.
-void paint_block(uint block, const int kind, const bool lacking, inout Tile tile) {
+void paint_splats(uint first, uint count, const int kind, const bool lacking, inout Tile tile) {
     const float column = float(gl_LocalInvocationID.x);
-    TileSplat mine = read_splat(block, kind, tile);
+    const uint own = first + gl_LocalInvocationID.x;
+    TileSplat mine = read_splat(listed[place_in_list(kind, min(own, count - 1))], kind, tile);
     // A filtered speck reaches its pixel anyway, and weighs there what its footprint does.
     if (mine.speck && frame.prefilter != 0) mine.plane.u = vec3(2, 0, 0);
     const int texel = int(mine.number * RECORD_TEXELS);
@@ -258,7 +304,7 @@ void paint_block(uint block, const int kind, const bool lacking, inout Tile tile
     const vec3 ellipse_row = vec3(2 * conic.z * d.y + conic.y * d.x, conic.y, conic.z);
     const float my_half_pixel = kind == FLAT ? 0 : 0.5 * length(mine.past_clip.yz);
 
-    uint left = subgroupBallot(touches_tile(mine.place, centre_of(tile)) && nearest_z >= tile.farthest).x;
+    uint left = subgroupBallot(own < count && nearest_z >= tile.farthest).x;
     if (left != 0) do {
             const uint i = findLSB(left);
             left &= left - 1;
@@ -318,24 +364,16 @@ void paint_block(uint block, const int kind, const bool lacking, inout Tile tile
         } while (left != 0);
 }
 
-// Blocks of a kind that touch the tile, one after the other; every invocation reads the numbers of as many as there are
-// invocations.
-uint touching_blocks(const int kind, uint first, uint blocks) {
-    const uint own = min(first + gl_LocalInvocationID.x, blocks - 1);
-    return touching[kind == FLAT ? own : LAST_TOUCHING - own];
-}
-
-void see(const int kind, uint blocks, inout Tile tile) {
-    if (blocks == 0) return;
-    uint n = 0;
+void see(const int kind, inout TileList list, inout Tile tile) {
+    if (list.blocks == 0) return;
     do {
-        const uint block = touching_blocks(kind, n, blocks);
-        const uint end = min(blocks - n, gl_WorkGroupSize.x);
-        uint i = 0;
-        do see_block(subgroupShuffle(block, i), kind, tile);
-        while (++i < end);
-        n += gl_WorkGroupSize.x;
-    } while (n < blocks);
+        list_next(kind, list, tile);
+        uint n = 0;
+        if (list.count != 0) do {
+                see_splats(n, list.count, kind, tile);
+                n += gl_WorkGroupSize.x;
+            } while (n < list.count);
+    } while (list.end < list.blocks);
 }
 
 void own(inout Tile tile) {
@@ -349,17 +387,16 @@ void own(inout Tile tile) {
     tile.farthest = subgroupMin(tile.farthest);
 }
 
-void paint(const int kind, const bool lacking, uint blocks, inout Tile tile) {
-    if (blocks == 0 || tile.farthest > 1) return;
-    uint n = 0;
+void paint(const int kind, const bool lacking, inout TileList list, inout Tile tile) {
+    if (list.blocks == 0 || tile.farthest > 1) return;
     do {
-        const uint block = touching_blocks(kind, n, blocks);
-        const uint end = min(blocks - n, gl_WorkGroupSize.x);
-        uint i = 0;
-        do paint_block(subgroupShuffle(block, i), kind, lacking, tile);
-        while (++i < end);
-        n += gl_WorkGroupSize.x;
-    } while (n < blocks);
+        list_next(kind, list, tile);
+        uint n = 0;
+        if (list.count != 0) do {
+                paint_splats(n, list.count, kind, lacking, tile);
+                n += gl_WorkGroupSize.x;
+            } while (n < list.count);
+    } while (list.end < list.blocks);
 }
 
 // Of solids mostly the disks show: what is met beside them weighs so little that it is looked for only where all else
@@ -367,18 +404,18 @@ void paint(const int kind, const bool lacking, uint blocks, inout Tile tile) {
 const float ENOUGH_WEIGHT = 100 * BESIDE_WEIGHT;
 const bool PAINT_DISKS_FIRST = SOLIDS == SOLID && VIEW != VIEW_OVERLAP;
 
-void paint_solids(uint blocks, inout Tile tile) {
+void paint_solids(inout TileList list, inout Tile tile) {
     if (!PAINT_DISKS_FIRST) {
-        paint(CLOSE_SOLID, false, blocks, tile);
+        paint(CLOSE_SOLID, false, list, tile);
         return;
     }
-    paint(CUT_DISK, false, blocks, tile);
+    paint(CUT_DISK, false, list, tile);
     bool lacks = false;
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {
         tile.lacks[row] = tile.owned[row] && tile.sum[row].a < ENOUGH_WEIGHT;
         lacks = lacks || tile.lacks[row];
     }
-    paint(SOLID, true, subgroupAny(lacks) ? blocks : 0, tile);
+    if (subgroupAny(lacks)) paint(SOLID, true, list, tile);
 }
 
 void main() {
@@ -411,14 +448,15 @@ void main() {
     const uint last_word = PART == PART_ALL ? tiles.words : min(first_word + SEGMENT_WORDS, tiles.words);
     const uint end_word = groups_of_cell(cell) == 0 ? first_word : last_word;
     const Found found = find_blocks(cell, first_word, end_word, tile.corner);
+    TileList flat_splats = TileList(found.flat_blocks, 0, 0, 0), solids = TileList(found.solid_blocks, 0, 0, 0);
     if (PART != PART_ATTRIBUTES) {
-        see(FLAT, found.flat_blocks, tile);
-        see(SOLIDS, found.solid_blocks, tile);
+        see(FLAT, flat_splats, tile);
+        see(SOLIDS, solids, tile);
     }
     if (PART != PART_VISIBILITY) {
         own(tile);
-        paint(FLAT, false, found.flat_blocks, tile);
-        paint_solids(found.solid_blocks, tile);
+        paint(FLAT, false, flat_splats, tile);
+        paint_solids(solids, tile);
     }
     const bool ends = PART == PART_ALL || (instance.flags & INSTANCE_LAST_SEGMENT) != 0;
     [[unroll]] for (int row = 0; row < TILE.y; ++row) {

@@ -338,6 +338,24 @@ TEST_CASE("every disk touches every tile") {
     check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
 }
 
+TEST_CASE("the last of more disks than a tile lists at once shows, too") {
+    // From far to near; the nearest is alone in its colour.
+    for (const bool solid : {false, true}) {
+        std::vector<Disk> disks;
+        for (int i = 0; i < 1500; ++i)
+            disks.push_back({{0, 0, -4 + 0.001f * static_cast<float>(i)}, {0, 0, 1}, 3, 0.0001f, kBlue});
+        disks.push_back({{0, 0, -2}, {0, 0, 1}, 0.5f, 0.0001f, kRed});
+        HandmadeModel model(true);
+        model.add_surfels(solid ? thick(disks) : disks);
+        Renderer renderer({});
+        CaptureSettings settings;
+        settings.width = settings.height = 32;
+        settings.camera = looking_down_z();
+        CAPTURE(solid);
+        check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
+    }
+}
+
 TEST_CASE("frames too large for one batch, and cells too full for one go") {
     // A wall of 40,000 disks is 625 groups: in batches of 100, whole, and seen from so far that all are in few cells.
     HandmadeModel model;
@@ -367,18 +385,22 @@ TEST_CASE("frames too large for one batch, and cells too full for one go") {
 }
 
 TEST_CASE("a cell full of thick disks leaves none out") {
-    // 22,400 disks are 350 groups, all of which touch the same tiles: more loops than some drivers allow at once.
-    std::vector<Disk> disks = scattered(22400, 0.03f, 0.04f, 0.01f);
-    // Seen nearly edge-on, most of what shows is the sides of solids.
-    for (Disk& disk : disks)
-        disk.normal = {0.02f, 1, 0.02f};
-    HandmadeModel model(true);
-    model.add_surfels(thick(disks));
-    Renderer renderer({});
-    CaptureSettings settings;
-    settings.width = settings.height = 64;
-    settings.camera = looking_down_z();
-    check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
+    // All touch the same tiles. 12,800 disks are 200 groups, more than a tile lists at once; 22,400 are 350 groups, and
+    // more loops than some drivers allow at once.
+    for (const int count : {12800, 22400}) {
+        CAPTURE(count);
+        std::vector<Disk> disks = scattered(count, 0.03f, 0.04f, 0.01f);
+        // Seen nearly edge-on, most of what shows is the sides of solids.
+        for (Disk& disk : disks)
+            disk.normal = {0.02f, 1, 0.02f};
+        HandmadeModel model(true);
+        model.add_surfels(thick(disks));
+        Renderer renderer({});
+        CaptureSettings settings;
+        settings.width = settings.height = 64;
+        settings.camera = looking_down_z();
+        check_agreement(renderer, scene_of(renderer.load(view_of(model.model()))), settings);
+    }
 }
 
 TEST_CASE("backends and sprites agree on kernels") {

@@ -148,6 +148,21 @@ void expect_everywhere(spvc_resource_type kind, bool inside, const Layout& expec
     CHECK(found > 0);
 }
 
+// Of a shader's source.
+double constant(const std::string& file, const std::string& name, int component = 0) {
+    std::ifstream stream(test::source_file("shaders/glsl/" + file));
+    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    std::smatch match;
+    CAPTURE(file, name);
+    REQUIRE(std::regex_search(text, match,
+                              std::regex(name + R"( = (?:u?vec[23]\()?)" +
+                                         (component == 0   ? ""
+                                          : component == 1 ? "[0-9.]+, "
+                                                           : "[0-9.]+, [0-9.]+, ") +
+                                         R"((-?[0-9.]+))")));
+    return std::stod(match[1]);
+}
+
 }  // namespace
 
 #define MEMBER(structure, name) static_cast<unsigned>(offsetof(structure, name))
@@ -215,19 +230,6 @@ TEST_CASE("the list of splats has the layout that the shaders declare") {
 }
 
 TEST_CASE("constants that C++ and GLSL share have the same values") {
-    const auto constant = [](const std::string& file, const std::string& name, int component = 0) {
-        std::ifstream stream(test::source_file("shaders/glsl/" + file));
-        const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-        std::smatch match;
-        CAPTURE(file, name);
-        REQUIRE(std::regex_search(text, match,
-                                  std::regex(name + R"( = (?:u?vec[23]\()?)" +
-                                             (component == 0   ? ""
-                                              : component == 1 ? "[0-9.]+, "
-                                                               : "[0-9.]+, [0-9.]+, ") +
-                                             R"((-?[0-9.]+))")));
-        return std::stod(match[1]);
-    };
     CHECK(constant("include/frame.glsl", "HORIZON") == kHorizon);
     CHECK(constant("include/splat.glsl", "PREFILTER_REACH") == kSetupReach);
     CHECK(constant("include/frame.glsl", "LIGHTING_HIGHLIGHTS") == std::uint32_t{kLightingHighlights});
@@ -263,11 +265,15 @@ TEST_CASE("no tile takes more rounds of loops than drivers allow, nor shares mor
     // llvmpipe ends every loop of an invocation once all its loops have run so often.
     constexpr double kMostRounds = 65535;
     constexpr double kBlocks = kTileGroup / kTileBlock;
-    // Handing a block's splats round, finding it among others, and reading as many blocks at once as there are lanes.
-    constexpr double kRoundsABlock = kTileBlock + 1 + 1.0 / kTileWidth;
+    // Listing a block's splats, reading them, and handing them round; reading the numbers of as many blocks at once as
+    // there are lanes; and as much again for lists and reads that are not full.
+    constexpr double kRoundsABlock = 1 + 1 + kTileBlock + 2.0 / kTileWidth;
     // At once: finding a group's blocks, then seeing, painting, and painting what lacks. In segments: one of these.
     CHECK(kTileFusedGroups * (1 + 3 * kBlocks * kRoundsABlock) < kMostRounds);
     CHECK(32 * kTileSegmentWords * (1 + kBlocks * kRoundsABlock) < kMostRounds);
-    // VkPhysicalDeviceLimits::maxComputeSharedMemorySize; a word a block.
-    CHECK(4 * kBlocks * std::max(32 * kTileSegmentWords, kTileFusedGroups) <= 16384);
+    // VkPhysicalDeviceLimits::maxComputeSharedMemorySize; a word a block, and one a splat of both lists.
+    const double listed = constant("include/tile.glsl", "MOST_LISTED");
+    CHECK(4 * (kBlocks * std::max(32 * kTileSegmentWords, kTileFusedGroups) + 2 * listed) <= 16384);
+    // What all lanes' blocks may add must fit at first.
+    CHECK(kTileWidth * kTileBlock <= listed);
 }

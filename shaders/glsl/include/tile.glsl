@@ -21,11 +21,14 @@ const uvec2 TILE = uvec2(8, 4);  // pixels; a row is a vector of a CPU's device
 const uint GROUP = 64;           // surfels
 const uint BLOCK = 8;            // splats
 const uint RECORD_TEXELS = 4;    // splat_record.glsl; solids have one more
-const uint SEGMENT_WORDS = 16;   // of a cell's mask; 4 bytes a block of it are the 16 KiB that any device shares
-// Groups of a cell that is gathered at once: finding the blocks of a group, and seeing, painting and painting what lacks of
-// each of its splats, takes up to 1 + 3 (1 + 8 + 1/8) BLOCKS rounds of loops, some 220; of less than 65,535.
-const uint FUSED_GROUPS = 288;
+const uint SEGMENT_WORDS = 8;    // of a cell's mask
+// Groups of a cell that is gathered at once: finding the blocks of a group, and listing and then seeing, painting and
+// painting what lacks of each of its splats, takes up to 1 + 3 (2 + 8 + 1/4) BLOCKS rounds of loops, some 247; of less than
+// 65,535.
+const uint FUSED_GROUPS = 264;
 const uint BLOCKS = GROUP / BLOCK;
+// Splats that a tile lists at once. With 4 bytes a block of its groups they are the 16 KiB that any device shares.
+const uint MOST_LISTED = 992;
 
 layout(set = 2, binding = 0, std140) uniform TileUniforms {
     uint cells_x, cells_y;

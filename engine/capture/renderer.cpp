@@ -168,6 +168,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
                           settings.view != View::kSurfelsOnly && settings.view != View::kSamples,
         .draw_surfels = settings.draw_surfels && settings.view != View::kTrianglesOnly,
         .surfels_as_triangles = settings.shown == Shown::kTriangles,
+        .label_levels = view == View::kLevels,
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
@@ -181,7 +182,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
     const auto selected = Clock::now();
     const PageStats pages = settle_pages(draws, settings.wait_for_data);
     cut_store.gather(draws, view == View::kLevels);
-    if (list_options.merge_patches) cut_store.gather_triangles(draws);
+    if (list_options.merge_patches && !list_options.label_levels) cut_store.gather_triangles(draws);
     const auto gathered = Clock::now();
     passes.data.update(frame, scene.lighting, scene.background);
 

@@ -66,7 +66,9 @@ class Culler {
                                        .triangles_only = options_.surfels_as_triangles});
         for (const PatchGroup& group : groups_.groups)
             append(draws_.triangles,
-                   {group.level.first_index, group.level.index_count, group.material, group.first_patch}, true);
+                   {group.level.first_index, group.level.index_count, group.material,
+                    label(group.first_patch, group.number, group.depth)},
+                   true);
         draws_.load += groups_.load;
     }
 
@@ -96,7 +98,7 @@ class Culler {
             if (patch.surfel_count == 0) continue;
             const Extent extent = seen_.locate(patch.bounds_min, patch.bounds_max);
             if (extent.containment == Containment::kOutside) continue;
-            const format::Lod& level = level_of(patch, extent);
+            const format::Lod& level = draws_.model->lods()[patch.first_lod + level_number(patch, extent)];
             if (level.index_count == 0) continue;  // a cloud's
             const double pixels = pixels_of(patch, extent.nearest);
             const DrawLoad load = PatchView::load_of_triangles(level, pixels, draws_.two_sided);
@@ -127,9 +129,13 @@ class Culler {
     }
 
     // The coarsest triangles whose error is within tau.
-    const format::Lod& level_of(const format::Patch& patch, const Extent& extent) const {
+    std::size_t level_number(const format::Patch& patch, const Extent& extent) const {
         const auto levels = std::span(draws_.model->lods()).subspan(patch.first_lod, patch.lod_count);
-        return levels[seen_.levels_within(levels.subspan(1), options_.tau, extent)];
+        return seen_.levels_within(levels.subspan(1), options_.tau, extent);
+    }
+
+    std::uint32_t label(std::uint32_t patch, std::size_t number, std::uint32_t depth) const {
+        return options_.label_levels ? level_label(static_cast<std::uint32_t>(number), depth) : patch;
     }
 
     void visit_node(std::uint32_t index) {
@@ -167,9 +173,10 @@ class Culler {
         if (!draws_.two_sided && seen_.faces_away(patch.cone_axis, patch.cone_cos, patch.bounds_min, patch.bounds_max))
             return;
         if (triangles) {
-            const format::Lod& level = level_of(patch, extent);
+            const std::size_t number = level_number(patch, extent);
+            const format::Lod& level = draws_.model->lods()[patch.first_lod + number];
             draws_.load += PatchView::load_of_triangles(level, pixels_of(patch, extent.nearest), draws_.two_sided);
-            append(draws_.triangles, {level.first_index, level.index_count, patch.material, index},
+            append(draws_.triangles, {level.first_index, level.index_count, patch.material, label(index, number, 0)},
                    options_.merge_patches);
             drawn_[index] = true;
             return;
@@ -212,12 +219,13 @@ class Culler {
         return 2 * (seen_.pixel_scale() * radius * stretch + kPrefilterReach);
     }
 
-    static void append(std::vector<DrawRange>& ranges, const DrawRange& range, bool merge) {
+    void append(std::vector<DrawRange>& ranges, const DrawRange& range, bool merge) const {
         if (range.count == 0) return;
         if (merge && !ranges.empty()) {
             DrawRange& last = ranges.back();
             const bool fits = last.count <= std::numeric_limits<std::uint32_t>::max() - range.count;
-            if (last.material == range.material && last.first + last.count == range.first && fits) {
+            const bool alike = last.material == range.material && (!options_.label_levels || last.patch == range.patch);
+            if (alike && last.first + last.count == range.first && fits) {
                 last.count += range.count;
                 return;
             }

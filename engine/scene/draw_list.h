@@ -28,8 +28,15 @@ struct DrawRange {
     std::uint64_t first = 0;  // into the model's index or surfel buffer
     std::uint32_t count = 0;
     std::uint32_t material = 0;  // triangles
-    std::uint32_t patch = 0;     // the first patch of the range
+    std::uint32_t patch = 0;     // the first patch of the range; see DrawListOptions::label_levels
 };
+
+/// What stands for a patch number in shaders that colour triangles by their level: how coarse, 0 the finest, and the
+/// depth in the octree, counted from 1, of the node whose patches they are of; 0: of a patch alone.
+/// shaders/glsl/include/colour.glsl takes it apart.
+constexpr std::uint32_t level_label(std::uint32_t number, std::uint32_t depth) {
+    return number << 8 | depth;
+}
 
 /// Splats that are drawn in place of surfels (merged_surfels.h), and those surfels.
 struct MergedCounts {
@@ -81,6 +88,7 @@ struct DrawListOptions {
     Sides sides = Sides::kAsBaked;
     bool draw_triangles = true, draw_surfels = true;
     bool surfels_as_triangles = false;  // surfel patches by their triangles
+    bool label_levels = false;          // ranges of triangles have level_label() in place of a patch
     bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
     double max_point_size = 255;       // pixels, of the device

@@ -19,23 +19,23 @@ class Chooser {
     PatchGroups choose() {
         if (model_.octree().empty()) return {};
         groups_.chosen.assign(model_.octree().size(), false);
-        visit(0);
+        visit(0, 1);
         return std::move(groups_);
     }
 
   private:
-    void visit(std::uint32_t index) {
+    void visit(std::uint32_t index, std::uint32_t depth) {
         const format::OctreeNode& node = model_.octree()[index];
         if (!model_.group_contents()[index].has_levels) return;
         const PatchView::Extent extent = seen_.locate(node.bounds_min, node.bounds_max);
         if (extent.containment == Containment::kOutside) return;
-        if (decide(index, extent)) return;
+        if (decide(index, depth, extent)) return;
         for (std::uint32_t child = node.first_child; child < node.first_child + node.child_count; ++child)
-            visit(child);
+            visit(child, depth + 1);
     }
 
     // Whether nothing is left to choose below the node.
-    bool decide(std::uint32_t index, const PatchView::Extent& extent) {
+    bool decide(std::uint32_t index, std::uint32_t depth, const PatchView::Extent& extent) {
         const format::OctreeNode& node = model_.octree()[index];
         const auto levels = std::span(model_.lods()).subspan(node.first_lod, node.lod_count);
         const std::size_t within = seen_.levels_within(levels, options_.tau, extent);
@@ -52,7 +52,11 @@ class Chooser {
             return within == levels.size();
         groups_.load += load;
         groups_.chosen[index] = true;
-        groups_.groups.push_back({level, model_.patches()[node.first_patch].material, node.first_patch});
+        groups_.groups.push_back({.level = level,
+                                  .material = model_.patches()[node.first_patch].material,
+                                  .first_patch = node.first_patch,
+                                  .depth = depth,
+                                  .number = static_cast<std::uint32_t>(within - 1)});
         if (content.surfels != 0)
             groups_.surfels.emplace_back(static_cast<std::uint32_t>(content.first_surfel),
                                          static_cast<std::uint32_t>(content.first_surfel + content.surfels));

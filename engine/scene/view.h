@@ -38,7 +38,8 @@ inline constexpr Names<View, 14> kViewNames{{
     {View::kSamples, "samples", "a sparse subset of the surfels"},
     {View::kTrianglesOnly, "triangles-only", "triangle patches alone"},
     {View::kSurfelsOnly, "surfels-only", "surfel patches alone"},
-    {View::kLevels, "levels", "what --tau chose: a colour for each level of the tree, grey for full detail"},
+    {View::kLevels, "levels",
+     "what --tau chose: a colour for each level of ellipses and of triangles, grey for full detail"},
     {View::kBoxes, "boxes", "boxes of the nodes that are drawn, a colour for each level, over the surface in grey"},
 }};
 

@@ -91,6 +91,7 @@ void fly_through(std::size_t points, int frames) {
         settings.camera = cameras.next();
         settings.tau = 6 * (i % 3);
         settings.wait_for_data = i % 4 == 0;
+        settings.view = i % 5 == 0 ? View::kLevels : View::kShaded;
         const Frame full = renderer.render(whole, settings), part = renderer.render(paged, settings);
         CHECK(test::holes(full, part) == 0);
         CHECK(full.stats.pages.limit_bytes == 0);

@@ -61,7 +61,7 @@ vec3 view_albedo(vec3 albedo, uint patch_number, bool is_surfel) {
         case VIEW_PATCHES: return label_colour(patch_number + instance.first_patch);
         case VIEW_REPRESENTATION: return is_surfel ? vec3(0.85, 0.32, 0.06) : vec3(0.10, 0.30, 0.75);
         case VIEW_SAMPLES: return vec3(0.85, 0.32, 0.06);
-        case VIEW_LEVELS: return is_surfel ? level_colour(patch_number) : vec3(0.6);
+        case VIEW_LEVELS: return is_surfel ? level_colour(patch_number) : triangle_level_colour(patch_number);
         case VIEW_WIREFRAME: return is_surfel ? vec3(0.75, 0.60, 0.45) : vec3(0.85);
         case VIEW_BOXES: return vec3(0.6);
         default: return albedo;

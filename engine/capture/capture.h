@@ -94,6 +94,13 @@ struct CutStats {
     double gather_ms = 0;
 };
 
+/// What is held of a frame's models on the device, each model once.
+struct ResidentBytes {
+    std::uint64_t surfels = 0;    // with what the pagers hold and the cut gathered
+    std::uint64_t triangles = 0;  // vertices and indices
+    std::uint64_t device = 0;     // all that is allocated there, pictures and scratch buffers included
+};
+
 struct DrawnBy {
     Backend backend;
     std::uint64_t surfels;  // sent to it, after culling by patch
@@ -114,7 +121,9 @@ struct FrameStats {
     DrawLoad load = {};
     double predicted_ms = 0;  // of the frame, by CaptureSettings::costs
     DrawCosts costs = {};
+    PatchCounts patches = {};
     CutStats cut = {};
+    ResidentBytes resident = {};
     PageStats pages = {};
     std::uint64_t covered_pixels = 0;  // at least by half
     double overlap_mean = 0;           // surfels contributing to a pixel, over pixels with any; with want_overlap

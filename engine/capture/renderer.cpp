@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <set>
 
 namespace splice {
 
@@ -130,6 +131,19 @@ BudgetedDraws select(const Scene& scene, const CaptureSettings& settings, const 
     return chosen;
 }
 
+ResidentBytes resident_bytes(const Scene& scene, const CutStore& gathered, gpu::Device& device) {
+    ResidentBytes bytes{.surfels = gathered.bytes(), .device = device.memory().statistics().allocated_bytes};
+    std::set<const GpuModel*> models;
+    for (const Instance& instance : scene.instances)
+        models.insert(instance.model.get());
+    for (const GpuModel* model : models) {
+        bytes.surfels += model->surfels().buffer().size();
+        if (model->pager() != nullptr) bytes.surfels += model->pager()->resident_bytes();
+        bytes.triangles += model->vertices().size() + model->indices().size();
+    }
+    return bytes;
+}
+
 }  // namespace
 
 void Renderer::Implementation::reserve_pixels(std::uint64_t bytes) {
@@ -210,6 +224,8 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         stats->drawn_by.push_back({share.backend, share.surfels});
     }
     stats->pages = pages;
+    stats->patches = draws.patches;
+    stats->resident = resident_bytes(scene, cut_store, device);
     stats->antialias = antialias;
     stats->shading = settings.shading;
     stats->surfels_drawn = draws.surfels;

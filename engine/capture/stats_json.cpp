@@ -42,6 +42,15 @@ nlohmann::ordered_json json_of(const PageStats& pages) {
     return json;
 }
 
+nlohmann::ordered_json json_of(const PatchCounts& patches) {
+    return {{"drawn", patches.drawn},
+            {"in_groups", patches.in_groups},
+            {"in_cut", patches.in_cut},
+            {"outside_frustum", patches.outside_frustum},
+            {"facing_away", patches.facing_away},
+            {"unwanted", patches.unwanted}};
+}
+
 nlohmann::ordered_json json_of(const SetupCounts& setup) {
     return {{"groups", setup.groups},
             {"certain_groups", setup.certain_groups},
@@ -69,8 +78,12 @@ nlohmann::ordered_json json_of(const FrameStats& stats) {
     json["predicted_ms"] = stats.predicted_ms;
     json["costs_us"] = costs_json(stats.costs);
     json["costs_us"]["calibrated"] = stats.costs != kSoftwareCosts;
+    json["patches"] = json_of(stats.patches);
     if (stats.cut.tau > 0 || stats.cut.budget_ms) json["cut"] = json_of(stats.cut);
     if (stats.pages.limit_bytes != 0) json["pages"] = json_of(stats.pages);
+    json["resident"] = {{"surfel_bytes", stats.resident.surfels},
+                        {"triangle_bytes", stats.resident.triangles},
+                        {"device_bytes", stats.resident.device}};
     json["covered_pixels"] = stats.covered_pixels;
     json["overlap_mean"] = stats.overlap_mean;
     return json;

@@ -26,6 +26,9 @@ class CutStore {
     /// apart. As above.
     void gather_triangles(DrawList& draws);
 
+    /// Of surfels, on the device.
+    std::uint64_t bytes() const { return store_ ? store_->buffer().size() : 0; }
+
   private:
     gpu::Device& device_;
     std::optional<SurfelStore> store_;

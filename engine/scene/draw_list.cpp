@@ -27,7 +27,10 @@ class Culler {
     void visit_all() {
         drawn_.assign(draws_.model->patches().size(), false);
         if (groups()) choose_groups();
-        if (groups_.chosen.empty() || !groups_.chosen.front()) visit_rest();
+        if (groups_.chosen.empty() || !groups_.chosen.front())
+            visit_rest();
+        else
+            draws_.patches.in_groups = drawn_.size();
         draws_.cut.statistics.groups_by_triangles = groups_.groups.size();
         if (options_.boxes_px == 0) return;
         draws_.boxes = node_boxes({.octree = draws_.model->octree(),
@@ -141,9 +144,15 @@ class Culler {
     void visit_node(std::uint32_t index) {
         const auto& octree = draws_.model->octree();
         const format::OctreeNode& node = octree[index];
-        if (!groups_.chosen.empty() && groups_.chosen[index]) return;
+        if (!groups_.chosen.empty() && groups_.chosen[index]) {
+            draws_.patches.in_groups += node.patch_count;
+            return;
+        }
         const Extent extent = seen_.locate(node.bounds_min, node.bounds_max);
-        if (extent.containment == Containment::kOutside) return;
+        if (extent.containment == Containment::kOutside) {
+            draws_.patches.outside_frustum += node.patch_count;
+            return;
+        }
         std::uint32_t next = node.first_patch;
         const std::uint32_t end = node.first_patch + node.patch_count;
         if (extent.containment == Containment::kPartly || !groups_.groups.empty()) {
@@ -159,19 +168,20 @@ class Culler {
 
     void visit_patches(std::uint32_t first, std::uint32_t end) {
         for (std::uint32_t patch = first; patch < end; ++patch)
-            visit_patch(patch);
+            ++(draws_.patches.*visit_patch(patch));
     }
 
-    void visit_patch(std::uint32_t index) {
+    // Returns what became of it.
+    std::uint64_t PatchCounts::*visit_patch(std::uint32_t index) {
         const format::Patch& patch = draws_.model->patches()[index];
         const bool triangles = options_.surfels_as_triangles ||
                                patch.representation == format::Representation::kTriangles ||
                                (!by_triangles_.empty() && by_triangles_[index]);
-        if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return;
+        if (!(triangles ? options_.draw_triangles : options_.draw_surfels)) return &PatchCounts::unwanted;
         const Extent extent = seen_.locate(patch.bounds_min, patch.bounds_max);
-        if (extent.containment == Containment::kOutside) return;
+        if (extent.containment == Containment::kOutside) return &PatchCounts::outside_frustum;
         if (!draws_.two_sided && seen_.faces_away(patch.cone_axis, patch.cone_cos, patch.bounds_min, patch.bounds_max))
-            return;
+            return &PatchCounts::facing_away;
         if (triangles) {
             const std::size_t number = level_number(patch, extent);
             const format::Lod& level = draws_.model->lods()[patch.first_lod + number];
@@ -179,11 +189,11 @@ class Culler {
             append(draws_.triangles, {level.first_index, level.index_count, patch.material, label(index, number, 0)},
                    options_.merge_patches);
             drawn_[index] = true;
-            return;
+            return &PatchCounts::drawn;
         }
-        if (patch.surfel_count == 0) return;
+        if (patch.surfel_count == 0) return &PatchCounts::unwanted;
         draws_.load.splat_pixels += pixels_of(patch, extent.nearest);
-        if (cuts()) return;
+        if (cuts()) return &PatchCounts::in_cut;
         drawn_[index] = true;
         const MergedRange drawn = surfels_of(index, extent);
         draws_.load.splats += static_cast<double>(drawn.count);
@@ -192,6 +202,7 @@ class Culler {
             !options_.force_quads && extent.containment == Containment::kInside && largest <= options_.max_point_size;
         auto& ranges = largest <= options_.small_px ? draws_.small : sprite ? draws_.sprites : draws_.quads;
         append(ranges, {drawn.first, drawn.count, 0, index}, true);
+        return &PatchCounts::drawn;
     }
 
     // The surfels of a patch, or what may stand for them from here.
@@ -289,6 +300,7 @@ DrawList build_draw_list(const Scene& scene, const Camera& camera, std::uint32_t
         list.cut += draws.cut.statistics;
         list.load += draws.load;
         list.merged += draws.merged;
+        list.patches += draws.patches;
         list.surfels += draws.cut.statistics.ellipses + draws.cut.statistics.surfels;
     }
     list.load.frame_pixels = static_cast<double>(width) * height;

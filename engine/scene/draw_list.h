@@ -48,6 +48,25 @@ struct MergedCounts {
     }
 };
 
+/// What became of patches, each counted once.
+struct PatchCounts {
+    std::uint64_t drawn = 0;      // one by one
+    std::uint64_t in_groups = 0;  // with others, by triangles of a node of the octree
+    std::uint64_t in_cut = 0;     // left to the cut through the point tree
+    std::uint64_t outside_frustum = 0, facing_away = 0;
+    std::uint64_t unwanted = 0;  // of a kind that is not to be drawn, or without surfels
+    PatchCounts& operator+=(const PatchCounts& other) {
+        drawn += other.drawn;
+        in_groups += other.in_groups;
+        in_cut += other.in_cut;
+        outside_frustum += other.outside_frustum;
+        facing_away += other.facing_away;
+        unwanted += other.unwanted;
+        return *this;
+    }
+    friend bool operator==(const PatchCounts&, const PatchCounts&) = default;
+};
+
 struct InstanceDraws {
     const GpuModel* model = nullptr;
     const SurfelStore* surfels = nullptr;  // what `sprites` and `quads` are ranges of
@@ -64,6 +83,7 @@ struct InstanceDraws {
     LodCut cut;                      // with DrawListOptions::tau: surfels and ellipses; CutStore makes ranges of it
     DrawLoad load = {};
     MergedCounts merged;
+    PatchCounts patches;
 };
 
 struct DrawList {
@@ -72,6 +92,7 @@ struct DrawList {
     CutStatistics cut;                         // of all instances
     DrawLoad load = {};
     MergedCounts merged;
+    PatchCounts patches;
     double predicted_ms = 0;  // what DrawListOptions::costs make of it
 };
 

@@ -70,11 +70,14 @@ void draw_performance_section(PanelContext& context) {
         ImGui::Text("overlap %.2f surfels a pixel", state.measured.stats.overlap_mean);
     else
         ImGui::TextDisabled("overlap: in the view of that name");
+    const PatchCounts& patches = state.measured.stats.patches;
+    ImGui::Text("patches outside %s, facing away %s", grouped(patches.outside_frustum).c_str(),
+                grouped(patches.facing_away).c_str());
     const CutStats& cut = state.measured.stats.cut;
     if (cut.tau > 0) {
         ImGui::Text("levels chosen in %.2f ms, %s nodes", cut.select_ms + cut.gather_ms,
                     grouped(cut.counts.visited).c_str());
-        ImGui::Text("outside %s, facing away %s", grouped(cut.counts.outside_frustum).c_str(),
+        ImGui::Text("nodes outside %s, facing away %s", grouped(cut.counts.outside_frustum).c_str(),
                     grouped(cut.counts.facing_away).c_str());
         ImGui::Text("%s ellipses for %s surfels", grouped(cut.counts.ellipses).c_str(),
                     grouped(cut.counts.merged_surfels).c_str());

@@ -2,6 +2,7 @@
 #include "engine/capture/calibrate.h"
 #include "engine/capture/capture.h"
 #include "engine/metrics/image_metrics.h"
+#include "engine/scene/patch_view.h"
 #include "preprocess/build_model/build_model.h"
 #include "preprocess/mesh/read_mesh.h"
 #include "preprocess/mesh/shapes.h"
@@ -307,6 +308,53 @@ TEST_CASE("a mesh's model takes the cheaper of triangles and surfels, patch by p
     const Frame surfels = renderer.render(scene, settings);
     CHECK(surfels.stats.cut.counts.patches_by_triangles == 0);
     CHECK(surfels.stats.surfels_drawn > cut.stats.surfels_drawn);
+}
+
+TEST_CASE("every patch is counted once, as drawn or as culled by what") {
+    const Model model = mesh_model();
+    Renderer renderer({});
+    const Scene scene = scene_of(renderer.load(view_of(model)));
+    const auto patches = model.patches.size();
+    const auto counted = [&](double distance, double tau, Sides sides, bool triangles = true) {
+        CaptureSettings settings = small_picture();
+        settings.camera = camera_at(scene.bounds(), glm::normalize(glm::dvec3(1, 2, 3)), distance);
+        settings.camera.target += glm::dvec3(0.3 * scene.bounds().radius(), 0, 0);
+        settings.tau = tau;
+        settings.sides = sides;
+        settings.draw_triangles = triangles;
+        const PatchCounts counts = renderer.render(scene, settings).stats.patches;
+        CAPTURE(distance, tau);
+        CHECK(counts.drawn + counts.in_groups + counts.in_cut + counts.outside_frustum + counts.facing_away +
+                  counts.unwanted ==
+              patches);
+        return counts;
+    };
+    const PatchCounts far = counted(4, 0, Sides::kTwoSided);
+    CHECK(far == PatchCounts{.drawn = patches});
+    const PatchCounts away = counted(4, 0, Sides::kOneSided);
+    CHECK(away.facing_away > patches / 8);
+    CHECK(away.facing_away < patches / 2);
+    CHECK(away.outside_frustum == 0);
+    const PatchCounts near = counted(1.2, 0, Sides::kTwoSided);
+    CHECK(near.outside_frustum > patches / 8);
+    CHECK(near.facing_away == 0);
+    // Whether a node is outside as a whole changes no count.
+    Camera camera = camera_at(scene.bounds(), glm::normalize(glm::dvec3(1, 2, 3)), 1.2);
+    camera.target += glm::dvec3(0.3 * scene.bounds().radius(), 0, 0);
+    fit_clip_planes(camera, scene.drawn_bounds());
+    const DrawList draws = build_draw_list(scene, camera, 192, 192, {.sides = Sides::kTwoSided});
+    const PatchView seen(camera, 192, 192, draws.instances[0].model_to_view, draws.instances[0].scale);
+    CHECK(near.outside_frustum == static_cast<std::uint64_t>(std::count_if(
+                                      model.patches.begin(), model.patches.end(), [&](const format::Patch& patch) {
+                                          return seen.locate(patch.bounds_min, patch.bounds_max).containment ==
+                                                 Containment::kOutside;
+                                      })));
+    const PatchCounts cut = counted(2, 0.5, Sides::kOneSided);
+    CHECK(cut.in_cut > 0);
+    CHECK(counted(4, 1000, Sides::kOneSided) == PatchCounts{.in_groups = patches});
+    const PatchCounts surfels = counted(4, 0, Sides::kTwoSided, false);
+    CHECK(surfels.unwanted > patches / 8);
+    CHECK(surfels.drawn == patches - surfels.unwanted);
 }
 
 TEST_CASE("a budget is held: the predicted time is within a fifth of it, and no more") {

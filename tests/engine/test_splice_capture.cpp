@@ -31,7 +31,13 @@ TEST_CASE("levels of detail: by the command line, else by the scene, budgets and
         REQUIRE(outcome.exit_code == 0);
         return nlohmann::json::parse(read_text(folder / "a.json"));
     };
-    CHECK(stats({"scene.json"})["cut"]["tau"] == 3);
+    const auto chosen = stats({"scene.json"});
+    CHECK(chosen["cut"]["tau"] == 3);
+    for (const char* count : {"visited", "outside_frustum", "facing_away", "ellipses", "merged_surfels", "surfels",
+                              "patches_by_triangles", "groups_by_triangles"})
+        CHECK(chosen["cut"].at(count).get<int>() >= 0);
+    for (const char* time : {"select_ms", "gather_ms"})
+        CHECK(chosen["cut"].at(time).get<double>() > 0);
     const std::string wide = read_text(folder / "a.png");
     CHECK(stats({"scene.json", "--kernel", "disk", "--tau", "1"})["cut"]["tau"] == 1);
     CHECK(read_text(folder / "a.png") != wide);
@@ -91,6 +97,11 @@ TEST_CASE("a model becomes a picture of the size asked for, with its statistics"
     CHECK(stats.at("frame_ms").get<double>() > 0);
     CHECK(stats.at("surfels_drawn") == 81);
     CHECK(stats.at("triangles_drawn") == 2);
+    CHECK(stats.at("patches").at("drawn") == 2);
+    CHECK(stats.at("patches").at("outside_frustum") == 0);
+    CHECK(stats.at("resident").at("surfel_bytes").get<std::size_t>() >= 81 * sizeof(format::Surfel));
+    CHECK(stats.at("resident").at("triangle_bytes") == 6 * sizeof(format::Vertex) + 6 * sizeof(std::uint32_t));
+    CHECK(stats.at("resident").at("device_bytes").get<std::size_t>() > 81 * sizeof(format::Surfel) + 120 * 80 * 4);
     CHECK(stats.at("covered_pixels").get<int>() > 500);
     CHECK(stats.at("overlap_mean").get<double>() >= 1);
     std::vector<std::string> passes;

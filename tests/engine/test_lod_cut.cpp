@@ -355,15 +355,12 @@ TEST_CASE("surfels that triangles of several patches are drawn for are not in th
     // Nodes of two levels of the tree stand for patches and for nodes of the octree.
     Points points = bulging_sphere(20000);
     std::vector<format::Patch> patches;
-    std::vector<format::OctreeNode> octree(1);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> groups;  // of patches: first, end
     const format::PointNode& root = points.nodes.front();
     for (std::uint32_t child = 0; child < root.child_count; ++child) {
         const format::PointNode& node = points.nodes[root.first_child + child];
-        format::OctreeNode group{};
-        group.first_patch = static_cast<std::uint32_t>(patches.size());
-        group.patch_count = node.child_count;
-        group.lod_count = 1;
-        octree.push_back(group);
+        const auto first = static_cast<std::uint32_t>(patches.size());
+        groups.emplace_back(first, first + node.child_count);
         for (std::uint32_t k = 0; k < node.child_count; ++k) {
             format::Patch patch{};
             patch.first_surfel = points.nodes[node.first_child + k].first_surfel;
@@ -371,16 +368,15 @@ TEST_CASE("surfels that triangles of several patches are drawn for are not in th
             patches.push_back(patch);
         }
     }
-    octree[0].patch_count = static_cast<std::uint32_t>(patches.size());
-    octree[0].lod_count = 1;
     points.hierarchy = point_hierarchy(points.nodes, patches, points.hierarchy.largest_radius);
-    const auto range_of = [&](const format::OctreeNode& node) {
-        const format::Patch& last = patches[node.first_patch + node.patch_count - 1];
-        return std::pair{static_cast<std::uint32_t>(patches[node.first_patch].first_surfel),
+    const auto surfels_of = [&](std::uint32_t first, std::uint32_t end) {
+        const format::Patch& last = patches[end - 1];
+        return std::pair{static_cast<std::uint32_t>(patches[first].first_surfel),
                          static_cast<std::uint32_t>(last.first_surfel + last.surfel_count)};
     };
     CutView view = view_from(2, 4);
-    const std::vector<std::pair<std::uint32_t, std::uint32_t>> left_out{range_of(octree[1]), range_of(octree[4])};
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>> left_out{surfels_of(groups[0].first, groups[0].second),
+                                                                        surfels_of(groups[3].first, groups[3].second)};
     view.left_out = left_out;
     const std::vector<int> times = times_in(cut_points(points.hierarchy, view), points);
     std::size_t wrong = 0;
@@ -390,7 +386,7 @@ TEST_CASE("surfels that triangles of several patches are drawn for are not in th
         wrong += times[i] != (out ? 0 : 1);
     }
     CHECK(wrong == 0);
-    const std::vector<std::pair<std::uint32_t, std::uint32_t>> all{range_of(octree[0])};
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>> all{surfels_of(0, groups.back().second)};
     view.left_out = all;
     CHECK(cut_points(points.hierarchy, view).runs.empty());
 }

@@ -1,6 +1,6 @@
 #include "preprocess/model_format/octahedral.h"
-#include "preprocess/simplify/region_simplifier.h"
 #include "tests/simplify/patch_meshes.h"
+#include "tests/simplify/simplified.h"
 
 #include <catch2/catch.hpp>
 
@@ -9,29 +9,9 @@
 #include <vector>
 
 using namespace splice;
+using test::Simplified;
 
 namespace {
-
-// What the simplifier leaves of a whole mesh.
-struct Simplified {
-    IndexedMesh mesh;
-    std::vector<std::uint8_t> shared = std::vector<std::uint8_t>(mesh.positions.size(), 0);
-    RenderVertices render = build_render_vertices(mesh);
-
-    std::vector<RegionLevel> levels(std::span<const double> shares, bool keep_topology = true) {
-        RegionTriangles all;
-        all.corners = render.indices;
-        return RegionSimplifier(mesh, render, shared).simplify(all, shares, keep_topology);
-    }
-    const format::Vertex& vertex(const RegionLevel& level, std::uint32_t corner) const {
-        return corner < render.vertices.size() ? render.vertices[corner]
-                                               : level.triangles.vertices[corner - render.vertices.size()];
-    }
-    std::uint32_t position(const RegionLevel& level, std::uint32_t corner) const {
-        return corner < render.vertices.size() ? render.position[corner]
-                                               : level.triangles.position[corner - render.vertices.size()];
-    }
-};
 
 Vec3f vector_of(const float (&v)[3]) {
     return {v[0], v[1], v[2]};

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::array kShares{1.0, 0.75, 0.5};
 constexpr int kLast = static_cast<int>(kShares.size()) - 1;
-constexpr int kPatience = 10;                      // frames
+constexpr int kSoon = 3;                           // frames in which a finer step shows whether it was too fine
+constexpr int kMostPatience = 80;                  // frames
 constexpr double kFinest = 1;                      // tau, above 0
 constexpr double kMostCoarser = 2, kFiner = 0.84;  // times tau, a step
 constexpr double kSpare = 0.85;                    // of the target: a frame that leaves room
@@ -25,8 +26,13 @@ double MovingDetail::share() const {
 void MovingDetail::took(double ms, double target_ms, double most_tau) {
     tau_ = std::min(tau_, most_tau);
     const double last_ms = std::exchange(last_ms_, ms);
+    ++frames_since_finer_;
     if (ms > target_ms) {
         fast_frames_ = 0;
+        if (!was_too_fine_ && frames_since_finer_ <= kSoon) {
+            was_too_fine_ = true;
+            patience_ = std::min(2 * patience_, kMostPatience);
+        }
         if (step_ < kLast) {
             ++step_;
         } else if (last_ms > target_ms && most_tau > 0) {
@@ -38,8 +44,8 @@ void MovingDetail::took(double ms, double target_ms, double most_tau) {
     }
     if (tau_ > 0) {
         fast_frames_ = ms < kSpare * target_ms ? fast_frames_ + 1 : 0;
-        if (fast_frames_ < kPatience) return;
-        fast_frames_ = 0;
+        if (fast_frames_ < patience_) return;
+        begin_finer();
         tau_ *= kFiner;
         if (tau_ < kFinest) tau_ = 0;
         return;
@@ -48,9 +54,15 @@ void MovingDetail::took(double ms, double target_ms, double most_tau) {
     // The time goes with the pixels at most, so the finer step fits if that much more does.
     const double finer = kShares[static_cast<std::size_t>(step_ - 1)] / share();
     fast_frames_ = ms * finer * finer < target_ms ? fast_frames_ + 1 : 0;
-    if (fast_frames_ < kPatience) return;
-    fast_frames_ = 0;
+    if (fast_frames_ < patience_) return;
+    begin_finer();
     --step_;
+}
+
+void MovingDetail::begin_finer() {
+    if (!was_too_fine_) patience_ = kPatience;
+    was_too_fine_ = false;
+    frames_since_finer_ = fast_frames_ = 0;
 }
 
 }  // namespace splice

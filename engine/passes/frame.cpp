@@ -74,11 +74,13 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
                         composed ? std::optional(empty_picture(settings.view, background)) : std::nullopt);
     if (backend.techniques && !passes.splats.empty()) {
         const SurfelOwnership ownership = passes.splats.add(graph, bindings, targets, settings);
-        if (!composed) passes.surfel_normalise.add(graph, targets, settings, background, ownership);
+        if (!composed)
+            passes.surfel_normalise.add(graph, targets, settings, background, ownership, draws.triangles > 0);
     } else if (!composed) {
         passes.surfel_visibility.add(graph, targets, settings, draws);
         passes.surfel_attribute.add(graph, targets, settings, draws);
-        passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kStencil);
+        passes.surfel_normalise.add(graph, targets, settings, background, SurfelOwnership::kStencil,
+                                    draws.triangles > 0);
     }
     if (settings.view == View::kBoxes) passes.boxes.add(graph, targets, settings, draws);
     if (!several) return targets.picture;

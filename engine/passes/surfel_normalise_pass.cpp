@@ -32,7 +32,7 @@ SurfelNormalisePass::SurfelNormalisePass(gpu::Device& device, const FrameData& d
       pool_(device) {}
 
 void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings,
-                              const Background& background, SurfelOwnership ownership) {
+                              const Background& background, SurfelOwnership ownership, bool triangles) {
     graph::Pass pass = graph.add_pass("surfel_normalise", graph::PassKind::graphics);
     pass.input_attachment(targets.triangle_colour);
     pass.input_attachment(targets.accumulation);
@@ -41,16 +41,16 @@ void SurfelNormalisePass::add(graph::Graph& graph, FrameTargets& targets, const 
     targets.picture = pass.colour_attachment(
         targets.picture, graph::Contents::clear(settings.antialias > 1 ? graph::clear_colour(0, 0, 0, 0)
                                                                        : empty_picture(settings.view, background)));
-    pass.record([this, targets, &settings, ownership](const graph::PassContext& context) {
-        draw(context, targets, settings, ownership);
+    pass.record([this, targets, &settings, ownership, triangles](const graph::PassContext& context) {
+        draw(context, targets, settings, ownership, triangles);
     });
 }
 
 void SurfelNormalisePass::draw(const graph::PassContext& context, const FrameTargets& targets,
-                               const FrameSettings& settings, SurfelOwnership ownership) {
+                               const FrameSettings& settings, SurfelOwnership ownership, bool triangles) {
     const std::array sets{data_.set(), input_set(context, targets, is_deferred(settings))};
     for (const std::uint32_t owner : {kTriangleStencil, kSurfelStencil}) {
-        if (ownership == SurfelOwnership::kWeight && owner == kTriangleStencil) continue;
+        if (owner == kTriangleStencil && (ownership == SurfelOwnership::kWeight || !triangles)) continue;
         vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                           pipelines_[{frame_variant(settings), ownership, owner, settings.antialias > 1}].get(
                               device_, context, [&] { return pipeline_options(settings, ownership, owner); }));

@@ -23,8 +23,9 @@ VkClearValue empty_picture(View view, const Background& background);
 class SurfelNormalisePass {
   public:
     SurfelNormalisePass(gpu::Device& device, const FrameData& data);
+    /// `triangles`: whether any are drawn; what they own is not looked for where there are none.
     void add(graph::Graph& graph, FrameTargets& targets, const FrameSettings& settings, const Background& background,
-             SurfelOwnership ownership);
+             SurfelOwnership ownership, bool triangles);
 
   private:
     struct Inputs {
@@ -32,7 +33,7 @@ class SurfelNormalisePass {
         VkDescriptorSet set = VK_NULL_HANDLE;
     };
     void draw(const graph::PassContext& context, const FrameTargets& targets, const FrameSettings& settings,
-              SurfelOwnership ownership);
+              SurfelOwnership ownership, bool triangles);
     VkDescriptorSet input_set(const graph::PassContext& context, const FrameTargets& targets, bool deferred);
     gpu::GraphicsPipelineOptions pipeline_options(const FrameSettings& settings, SurfelOwnership ownership,
                                                   std::uint32_t owner) const;

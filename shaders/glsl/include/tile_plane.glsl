@@ -87,4 +87,12 @@ float smaller(float a, float b) {
     return intBitsToFloat(min(floatBitsToInt(a), floatBitsToInt(b)));
 }
 
+// The same of any numbers. Comparisons, for the same reason.
+float highest(float a, float b) {
+    return a < b ? b : a;
+}
+float lowest(float a, float b) {
+    return a < b ? a : b;
+}
+
 #endif

@@ -95,8 +95,8 @@ Meeting meet_solid(PixelPlane at, TileAxis axis, float past_clip) {
     const float distance2 = at.u * at.u + at.v * at.v;
     const bool on_disk = distance2 <= at.e * at.e && past_clip <= 0 && at.e > 0;
     const float clip_k = past_clip * axis.clip_k;
-    const float low = max(axis.ends.x * at.e, clip_k + axis.clip_ends.x);
-    const float high = min(axis.ends.y * at.e, clip_k + axis.clip_ends.y);
+    const float low = highest(axis.ends.x * at.e, clip_k + axis.clip_ends.x);
+    const float high = lowest(axis.ends.y * at.e, clip_k + axis.clip_ends.y);
     // Where the ray is nearest the axis; in perspective, where |(u, v) (1 + G) + G e skew| is least.
     const float along = at.u * axis.skew.x + at.v * axis.skew.y;
     // With the eye inside the cylinder it is beyond the least.
@@ -104,7 +104,7 @@ Meeting meet_solid(PixelPlane at, TileAxis axis, float past_clip) {
     const float nearest_k = ORTHOGRAPHIC ? -along / axis.steepness
                             : slope > 0  ? -(distance2 + at.e * along) / slope
                                          : -NO_BOUND;
-    const float k = min(max(nearest_k, low), high);
+    const float k = lowest(highest(nearest_k, low), high);
     const vec2 nearest = vec2(at.u + k * axis.skew.x, at.v + k * axis.skew.y);
     const float rim = ORTHOGRAPHIC ? 1 : at.e - k;
     const bool beside_disk = !on_disk && low <= high && dot(nearest, nearest) <= rim * rim;

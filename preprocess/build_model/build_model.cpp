@@ -2,6 +2,7 @@
 
 #include "preprocess/build_model/assemble_cloud.h"
 #include "preprocess/build_model/assemble_model.h"
+#include "preprocess/build_model/workers_aside.h"
 #include "preprocess/cloud/orient_normals.h"
 #include "preprocess/cloud/read_point_cloud.h"
 #include "preprocess/model_format/error.h"
@@ -117,6 +118,7 @@ Model bake_file(const std::filesystem::path& path, const BakeOptions& options, B
                 const Progress& progress) {
     const auto limit = limit_threads(options.threads);
     const Stopwatch preparation;
+    const WorkersAside workers;
     SourceFile file;
     PointCloud cloud;
     SourceMesh source;

@@ -1,6 +1,6 @@
-// Where the threads of a bake run. Linux wakes a thread on the processor it ran on last, even if that is busy and another
-// idle, where the two are halves of one core: a worker then waits for up to 3 ms, which is half of clustering a small
-// mesh, or takes turns with the thread it should help.
+// Where the threads of a bake run. Linux wakes a thread on the processor it ran on last, even if that is busy and
+// another idle, where the two are halves of one core: a worker then waits for up to 3 ms, which is half of clustering a
+// small mesh, or takes turns with the thread it should help.
 #pragma once
 
 #include <tbb/task_scheduler_observer.h>
@@ -9,7 +9,7 @@ namespace splice {
 
 /// While it lives, workers of the calling thread's arena that find themselves on that thread's processor move to
 /// another one once, and may run anywhere again afterwards. Has no effect but on speed, and none but on Linux.
-class WorkersAside : public tbb::task_scheduler_observer {
+class WorkersAside final : public tbb::task_scheduler_observer {
   public:
     WorkersAside();
     WorkersAside(const WorkersAside&) = delete;

@@ -3,13 +3,11 @@
 #include "preprocess/simplify/patch_simplifier.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace splice {
 namespace {
-
-// Vertices with more triangles are neither moved nor moved onto, which bounds the work of a collapse.
-constexpr std::uint32_t kMaxDegree = 128;
 
 // A collapse may turn no triangle by more than 78 degrees, nor to more than 60 degrees from the mean of its vertices'
 // normals in the finest level.
@@ -38,19 +36,11 @@ double squared_colour_distance(std::uint32_t a, std::uint32_t b) {
     return sum / (255.0 * 255.0);
 }
 
-bool costs_more(double cost_a, std::uint32_t vertex_a, double cost_b, std::uint32_t vertex_b) {
-    return cost_a != cost_b ? cost_a > cost_b : vertex_a > vertex_b;
-}
-
 }  // namespace
-
-bool PatchSimplifier::goes_later(const Candidate& a, const Candidate& b) {
-    return costs_more(a.cost, a.vertex, b.cost, b.vertex);
-}
 
 PatchSimplifier::PatchSimplifier(const IndexedMesh& mesh, const RenderVertices& vertices,
                                  std::span<const std::uint8_t> on_border)
-    : mesh_(mesh), render_(vertices), on_border_(on_border), local_of_position_(mesh.positions.size(), kNone) {}
+    : CollapseQueue(mesh.positions.size()), mesh_(mesh), render_(vertices), on_border_(on_border) {}
 
 PatchSimplifier::CoarserLevels PatchSimplifier::simplify(std::span<const std::uint32_t> triangles,
                                                          const SimplifyOptions& options) {
@@ -61,12 +51,12 @@ PatchSimplifier::CoarserLevels PatchSimplifier::simplify(std::span<const std::ui
     CoarserLevels ladder;
     for (double rung = finest * kLadderStep; options.levels > 1; rung *= kLadderStep) {
         const std::size_t before = alive_count_;
-        collapse_until(static_cast<std::size_t>(std::ceil(std::max(rung, floor))));
+        const auto wanted = static_cast<std::size_t>(std::ceil(std::max(rung, floor)));
+        collapse_while([&] { return alive_count_ > wanted; });
         if (alive_count_ != before) append_level(ladder);
-        if (heap_.empty() || rung <= floor) break;
+        if (queue_is_empty() || rung <= floor) break;
     }
-    for (const Index position : mesh_position_)
-        local_of_position_[position] = kNone;
+    forget();
     return choose_levels(ladder, triangles.size(), options);
 }
 
@@ -101,142 +91,47 @@ PatchSimplifier::CoarserLevels PatchSimplifier::choose_levels(const CoarserLevel
 }
 
 void PatchSimplifier::load(std::span<const std::uint32_t> triangles) {
-    corner_vertex_.clear();
-    corner_render_.clear();
-    next_corner_.clear();
-    alive_.assign(triangles.size(), 1);
-    alive_count_ = triangles.size();
-    position_.clear();
-    normal_.clear();
-    mesh_position_.clear();
-    first_corner_.clear();
-    degree_.clear();
-    locked_.clear();
+    begin(triangles.size());
     quadric_.clear();
     for (const std::uint32_t triangle : triangles)
         load_triangle(triangle);
+    end_load();
     for (Vec3d& normal : normal_)
         normal.normalize();  // leaves a zero vector as it is
-    version_.assign(position_.size(), 0);
-    mark_.assign(position_.size(), 0);
-    current_mark_ = 0;
     error_ = 0;
     lock_seams_and_borders();
-    heap_.clear();
-    for (Index vertex = 0; vertex < position_.size(); ++vertex)
-        push_candidate(vertex);
-    std::make_heap(heap_.begin(), heap_.end(), goes_later);
+    fill_queue();
 }
 
 void PatchSimplifier::load_triangle(std::uint32_t triangle) {
-    Index local[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Index mesh_position = mesh_.triangles[triangle][k];
-        Index& vertex = local_of_position_[mesh_position];
-        if (vertex == kNone) {
-            vertex = static_cast<Index>(position_.size());
-            position_.push_back(mesh_.positions[mesh_position].cast<double>());
-            normal_.push_back(Vec3d::Zero());
-            mesh_position_.push_back(mesh_position);
-            first_corner_.push_back(kNone);
-            degree_.push_back(0);
-            locked_.push_back(on_border_[mesh_position]);
-            quadric_.emplace_back();
-        }
-        const Index corner = static_cast<Index>(corner_vertex_.size());
-        corner_vertex_.push_back(vertex);
-        corner_render_.push_back(render_.indices[std::size_t{3} * triangle + k]);
-        next_corner_.push_back(first_corner_[vertex]);
-        first_corner_[vertex] = corner;
-        ++degree_[vertex];
-        local[k] = vertex;
-    }
-    const Vec3d cross = (position_[local[1]] - position_[local[0]]).cross(position_[local[2]] - position_[local[0]]);
+    std::array<Index, 3> local{};
+    for (std::size_t k = 0; k < 3; ++k)
+        local[k] = add_corner(mesh_, mesh_.triangles[triangle][k], render_.indices[std::size_t{3} * triangle + k]);
+    quadric_.resize(position_.size());
+    const Vec3d cross = add_normal();
     const double length = cross.norm();
     if (length == 0) return;
-    for (const Index vertex : local) {
-        normal_[vertex] += cross;
+    for (const Index vertex : local)
         quadric_[vertex].add_plane(cross / length, position_[local[0]], length / 2);
-    }
 }
 
+// The triangles around a vertex that may move form one closed fan.
 void PatchSimplifier::lock_seams_and_borders() {
+    locked_.resize(position_.size());
     for (Index vertex = 0; vertex < position_.size(); ++vertex) {
+        locked_[vertex] = on_border_[mesh_position_[vertex]];
         if (locked_[vertex]) continue;
-        const Index render = corner_render_[first_corner_[vertex]];
+        const Index render = corner_render_[first_corner_[vertex]], start = after(first_corner_[vertex]);
         bool seam = false;
         for_each_corner(vertex, [&](Index corner) { seam |= corner_render_[corner] != render; });
-        locked_[vertex] = seam || degree_[vertex] > kMaxDegree || !is_interior(vertex);
+        locked_[vertex] = seam || degree_[vertex] > kMaxDegree || !is_fan(vertex, start, start);
     }
 }
 
-// The triangles around the vertex form one closed, consistently oriented fan.
-bool PatchSimplifier::is_interior(Index vertex) const {
-    const Index start = after(first_corner_[vertex]);
-    Index at = start;
-    for (Index step = 0; step < degree_[vertex]; ++step) {
-        Index next = kNone, leaving = 0;
-        for_each_corner(vertex, [&](Index corner) {
-            if (after(corner) != at) return;
-            next = before(corner);
-            ++leaving;
-        });
-        if (leaving != 1) return false;
-        at = next;
-        if (at == start) return step + 1 == degree_[vertex];
-    }
-    return false;
-}
-
-void PatchSimplifier::collapse_until(std::size_t triangle_count) {
-    while (alive_count_ > triangle_count && !heap_.empty()) {
-        std::pop_heap(heap_.begin(), heap_.end(), goes_later);
-        const Candidate candidate = heap_.back();
-        heap_.pop_back();
-        if (candidate.version != version_[candidate.vertex]) continue;
-        const std::size_t before_push = heap_.size();
-        take(candidate);
-        for (std::size_t size = before_push + 1; size <= heap_.size(); ++size)
-            std::push_heap(heap_.begin(), heap_.begin() + static_cast<std::ptrdiff_t>(size), goes_later);
-    }
-}
-
-// Appends to the heap's array without restoring its order: collapse_until does that.
-void PatchSimplifier::push_candidate(Index vertex) {
-    ++version_[vertex];
-    if (locked_[vertex] || degree_[vertex] > kMaxDegree) return;
-    Candidate best{0, vertex, kNone, version_[vertex], false};
-    // The fan is closed, so each neighbour is the one after exactly one corner.
-    for_each_corner(vertex, [&](Index corner) {
-        const Index target = after(corner);
-        const double target_cost = cost(vertex, target);
-        if (best.target != kNone && !costs_more(best.cost, best.target, target_cost, target)) return;
-        best.cost = target_cost;
-        best.target = target;
-    });
-    heap_.push_back(best);
-}
-
-// Legality is checked only for the cheapest candidate of all. When its target is refused, the vertex waits again with
-// the cheapest legal one; without any, until its surroundings change.
-void PatchSimplifier::take(const Candidate& candidate) {
-    if (candidate.legal || is_legal(candidate.vertex, candidate.target)) {
-        collapse(candidate.vertex, candidate.target);
-        return;
-    }
-    list_targets(candidate.vertex);
-    for (const Target& target : targets_) {
-        if (target.vertex == candidate.target || !is_legal(candidate.vertex, target.vertex)) continue;
-        heap_.push_back({target.cost, candidate.vertex, target.vertex, candidate.version, true});
-        return;
-    }
-}
-
+// The fan is closed, so each neighbour is the one after exactly one corner.
 void PatchSimplifier::list_targets(Index vertex) {
     targets_.clear();
     for_each_corner(vertex, [&](Index corner) { targets_.push_back({cost(vertex, after(corner)), after(corner)}); });
-    std::ranges::sort(targets_,
-                      [](const Target& a, const Target& b) { return costs_more(b.cost, b.vertex, a.cost, a.vertex); });
 }
 
 double PatchSimplifier::cost(Index vertex, Index target) const {
@@ -257,39 +152,10 @@ bool PatchSimplifier::is_legal(Index vertex, Index target) {
            turns_no_triangle(vertex, target);
 }
 
-// The neighbours that both share are exactly the tips of the two triangles on the edge, and no triangle joins the tips
-// to the target already; else the collapse would pinch the surface or fold it onto itself. The two triangles must also
-// agree on the target's attributes.
+// The two triangles must also agree on the target's attributes.
 bool PatchSimplifier::link_is_simple(Index vertex, Index target) {
-    const Index near = ++current_mark_;
-    Index tips[2] = {kNone, kNone}, render[2] = {kNone, kNone};
-    bool shared_ok = true;
-    for_each_corner(vertex, [&](Index corner) {
-        mark_[after(corner)] = near;
-        if (after(corner) == target) {
-            shared_ok &= tips[0] == kNone;
-            tips[0] = before(corner);
-            render[0] = corner_render_[next_in_triangle(corner)];
-        } else if (before(corner) == target) {
-            shared_ok &= tips[1] == kNone;
-            tips[1] = after(corner);
-            render[1] = corner_render_[next_in_triangle(next_in_triangle(corner))];
-        }
-    });
-    if (!shared_ok || tips[0] == kNone || tips[1] == kNone || render[0] != render[1]) return false;
-    const Index seen = ++current_mark_;
-    Index common = 0;
-    bool folds = false;
-    for_each_corner(target, [&](Index corner) {
-        for (const Index neighbour : {after(corner), before(corner)}) {
-            if (mark_[neighbour] != near) continue;
-            mark_[neighbour] = seen;
-            ++common;
-        }
-        folds |= (after(corner) == tips[0] && before(corner) == tips[1]) ||
-                 (after(corner) == tips[1] && before(corner) == tips[0]);
-    });
-    return common == 2 && !folds;
+    const EdgeTriangles edge = triangles_on_edge(vertex, target);
+    return edge.simple && edge.count() == 2 && edge.render[0] == edge.render[1] && shares_only_tips(target, edge);
 }
 
 bool PatchSimplifier::turns_no_triangle(Index vertex, Index target) const {
@@ -313,65 +179,21 @@ bool PatchSimplifier::turns_no_triangle(Index vertex, Index target) const {
 }
 
 void PatchSimplifier::collapse(Index vertex, Index target) {
-    Index render = kNone;
-    Index tips[2] = {kNone, kNone};
-    for_each_corner(vertex, [&](Index corner) {
-        if (after(corner) == target) {
-            render = corner_render_[next_in_triangle(corner)];
-            tips[0] = before(corner);
-        } else if (before(corner) == target) {
-            tips[1] = after(corner);
-        }
-    });
-    Index last = kNone;
-    for_each_corner(vertex, [&](Index corner) {
-        last = corner;
-        if (after(corner) == target || before(corner) == target) {
-            alive_[corner / 3] = 0;
-            --alive_count_;
-        }
-    });
-    for_each_corner(vertex, [&](Index corner) {
-        corner_vertex_[corner] = target;
-        corner_render_[corner] = render;
-    });
-    next_corner_[last] = first_corner_[target];
-    first_corner_[target] = first_corner_[vertex];
-    first_corner_[vertex] = kNone;
-    ++version_[vertex];
-    for (const Index touched : {target, tips[0], tips[1]})
+    const EdgeTriangles edge = triangles_on_edge(vertex, target);
+    drop_triangles_on_edge(vertex, target);
+    move_corners(vertex, target, edge.render[0]);
+    drop_candidate(vertex);
+    for (const Index touched : {target, edge.tips[0], edge.tips[1]})
         drop_dead_corners(touched);
 
     quadric_[target] += quadric_[vertex];
     const PlaneQuadric& merged = quadric_[target];
     if (merged.weight() > 0) error_ = std::max(error_, std::sqrt(merged.value(position_[target]) / merged.weight()));
 
-    ring_.clear();
-    const Index near = ++current_mark_;
-    for_each_corner(target, [&](Index corner) {
-        for (const Index neighbour : {after(corner), before(corner)}) {
-            if (mark_[neighbour] == near) continue;
-            mark_[neighbour] = near;
-            ring_.push_back(neighbour);
-        }
-    });
-    push_candidate(target);
-    for (const Index neighbour : ring_)
-        push_candidate(neighbour);
-}
-
-void PatchSimplifier::drop_dead_corners(Index vertex) {
-    Index* link = &first_corner_[vertex];
-    Index degree = 0;
-    while (*link != kNone) {
-        if (alive_[*link / 3]) {
-            link = &next_corner_[*link];
-            ++degree;
-        } else {
-            *link = next_corner_[*link];
-        }
-    }
-    degree_[vertex] = degree;
+    ring_.assign(1, target);
+    add_ring(target);
+    for (const Index changed : ring_)
+        push_candidate(changed);
 }
 
 void PatchSimplifier::append_level(CoarserLevels& result) const {

@@ -12,9 +12,6 @@
 namespace splice {
 namespace {
 
-// Vertices with more triangles are neither moved nor moved onto, which bounds the work of a collapse.
-constexpr std::uint32_t kMaxDegree = 128;
-
 // A collapse may turn no triangle to more than 75 degrees from the mean of what its vertices stand for.
 constexpr double kLeastCosine = 0.25;
 
@@ -43,19 +40,11 @@ constexpr double kBorderSquares = 4;
 // Least vertices that are free for each that is locked.
 constexpr double kLeastFree = 0.5;
 
-bool costs_more(double cost_a, std::uint32_t vertex_a, double cost_b, std::uint32_t vertex_b) {
-    return cost_a != cost_b ? cost_a > cost_b : vertex_a > vertex_b;
-}
-
 }  // namespace
-
-bool RegionSimplifier::goes_later(const Candidate& a, const Candidate& b) {
-    return costs_more(a.cost, a.vertex, b.cost, b.vertex);
-}
 
 RegionSimplifier::RegionSimplifier(const IndexedMesh& mesh, const RenderVertices& vertices,
                                    std::span<const std::uint8_t> shared)
-    : mesh_(mesh), render_(vertices), shared_(shared), local_of_position_(mesh.positions.size(), kNone) {
+    : CollapseQueue(mesh.positions.size()), mesh_(mesh), render_(vertices), shared_(shared) {
     attribute_count_ = mesh.corner_uvs.empty() ? mesh.has_colours ? 6 : 3 : 8;
 }
 
@@ -70,27 +59,22 @@ std::vector<RegionLevel> RegionSimplifier::simplify(const RegionTriangles& trian
         const std::size_t before = alive_count_;
         collapse_until(static_cast<std::size_t>(std::ceil(finest * share)));
         if (alive_count_ != before) levels.push_back(level());
-        if (heap_.empty() || free_ <= least_free_) break;
+        if (queue_is_empty() || free_ <= least_free_) break;
     }
-    for (const Index position : mesh_position_)
-        local_of_position_[position] = kNone;
+    forget();
     return levels;
 }
 
 void RegionSimplifier::load(const RegionTriangles& triangles) {
-    for (auto* array : {&corner_vertex_, &corner_render_, &next_corner_, &mesh_position_, &first_corner_, &degree_})
-        array->clear();
-    position_.clear();
-    normal_.clear();
     const std::vector<std::uint32_t> corners = without_fins(triangles.corners);
-    alive_count_ = corners.size() / 3;
-    alive_.assign(alive_count_, 1);
-    for (std::size_t i = 0; i < corners.size(); i += 3)
-        load_triangle(std::span(corners).subspan(i, 3));
-    version_.assign(position_.size(), 0);
-    mark_.assign(position_.size(), 0);
+    begin(corners.size() / 3);
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k)
+            add_corner(mesh_, position_at(corners[i + k]), corners[i + k]);
+        add_normal();
+    }
+    end_load();
     merged_.assign(position_.size(), 0);
-    current_mark_ = 0;
     kind_.resize(position_.size());
     for (Index vertex = 0; vertex < kind_.size(); ++vertex)
         kind_[vertex] = kind_of(vertex);
@@ -98,10 +82,7 @@ void RegionSimplifier::load(const RegionTriangles& triangles) {
     least_free_ = static_cast<std::size_t>(kLeastFree * static_cast<double>(kind_.size() - free_));
     weigh_attributes();
     add_quadrics();
-    heap_.clear();
-    for (Index vertex = 0; vertex < position_.size(); ++vertex)
-        push_candidate(vertex);
-    std::make_heap(heap_.begin(), heap_.end(), goes_later);
+    fill_queue();
 }
 
 // Parts that were simplified apart may leave a triangle and its reverse at the border between them: a fin of no volume.
@@ -129,32 +110,6 @@ std::vector<std::uint32_t> RegionSimplifier::without_fins(std::span<const std::u
         for (std::size_t k = 0; k < 3 && !dropped[triangle]; ++k)
             kept.push_back(corners[3 * triangle + k]);
     return kept;
-}
-
-void RegionSimplifier::load_triangle(std::span<const std::uint32_t> corners) {
-    std::array<Index, 3> local{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Index mesh_position = position_at(corners[k]);
-        Index& vertex = local_of_position_[mesh_position];
-        if (vertex == kNone) {
-            vertex = static_cast<Index>(position_.size());
-            position_.push_back(mesh_.positions[mesh_position].cast<double>());
-            normal_.push_back(Vec3d::Zero());
-            mesh_position_.push_back(mesh_position);
-            first_corner_.push_back(kNone);
-            degree_.push_back(0);
-        }
-        const Index corner = static_cast<Index>(corner_vertex_.size());
-        corner_vertex_.push_back(vertex);
-        corner_render_.push_back(corners[k]);
-        next_corner_.push_back(first_corner_[vertex]);
-        first_corner_[vertex] = corner;
-        ++degree_[vertex];
-        local[k] = vertex;
-    }
-    const Vec3d cross = (position_[local[1]] - position_[local[0]]).cross(position_[local[2]] - position_[local[0]]);
-    for (const Index vertex : local)
-        normal_[vertex] += cross;
 }
 
 // By the width of what a vertex stands for on the way to the coarsest level.
@@ -226,20 +181,8 @@ RegionSimplifier::Kind RegionSimplifier::kind_of(Index vertex) {
     if (open.count == 2 && (open.before == kNone || open.after == kNone)) return Kind::kLocked;
     if (!keep_topology_) return open.count == 0 ? Kind::kInner : Kind::kBorder;
     const Index start = open.count == 0 ? after(first_corner_[vertex]) : open.after;
-    Index at = start;
-    for (Index step = 0; step < degree_[vertex]; ++step) {
-        Index next = kNone, leaving = 0;
-        for_each_corner(vertex, [&](Index corner) {
-            if (after(corner) != at) return;
-            next = before(corner);
-            ++leaving;
-        });
-        if (leaving != 1) return Kind::kLocked;
-        at = next;
-        if (at == (open.count == 0 ? start : open.before))
-            return step + 1 != degree_[vertex] ? Kind::kLocked : open.count == 0 ? Kind::kInner : Kind::kBorder;
-    }
-    return Kind::kLocked;
+    const Kind kind = open.count == 0 ? Kind::kInner : Kind::kBorder;
+    return is_fan(vertex, start, open.count == 0 ? start : open.before) ? kind : Kind::kLocked;
 }
 
 RegionSimplifier::OpenEdges RegionSimplifier::open_edges(Index vertex) {
@@ -258,44 +201,7 @@ RegionSimplifier::OpenEdges RegionSimplifier::open_edges(Index vertex) {
 }
 
 void RegionSimplifier::collapse_until(std::size_t triangle_count) {
-    while (alive_count_ > triangle_count && !heap_.empty() && free_ > least_free_) {
-        std::pop_heap(heap_.begin(), heap_.end(), goes_later);
-        const Candidate candidate = heap_.back();
-        heap_.pop_back();
-        if (candidate.version != version_[candidate.vertex]) continue;
-        const std::size_t before_push = heap_.size();
-        take(candidate);
-        for (std::size_t size = before_push + 1; size <= heap_.size(); ++size)
-            std::push_heap(heap_.begin(), heap_.begin() + static_cast<std::ptrdiff_t>(size), goes_later);
-    }
-}
-
-// Appends to the heap's array without restoring its order: collapse_until does that.
-void RegionSimplifier::push_candidate(Index vertex) {
-    ++version_[vertex];
-    if (kind_[vertex] == Kind::kLocked || degree_[vertex] > kMaxDegree) return;
-    list_targets(vertex);
-    if (targets_.empty()) return;
-    const Target& best = *std::ranges::min_element(
-        targets_, [](const Target& a, const Target& b) { return costs_more(b.cost, b.vertex, a.cost, a.vertex); });
-    heap_.push_back({best.cost, vertex, best.vertex, version_[vertex], false});
-}
-
-// Legality is checked only for the cheapest candidate of all. When its target is refused, the vertex waits again with
-// the cheapest legal one; without any, until its surroundings change.
-void RegionSimplifier::take(const Candidate& candidate) {
-    if (candidate.legal || is_legal(candidate.vertex, candidate.target)) {
-        collapse(candidate.vertex, candidate.target);
-        return;
-    }
-    list_targets(candidate.vertex);
-    std::ranges::sort(targets_,
-                      [](const Target& a, const Target& b) { return costs_more(b.cost, b.vertex, a.cost, a.vertex); });
-    for (const Target& target : targets_) {
-        if (target.vertex == candidate.target || !is_legal(candidate.vertex, target.vertex)) continue;
-        heap_.push_back({target.cost, candidate.vertex, target.vertex, candidate.version, true});
-        return;
-    }
+    collapse_while([&] { return alive_count_ > triangle_count && free_ > least_free_; });
 }
 
 // An inner vertex's neighbours: each is the one after exactly one corner. On a border, those along it.
@@ -323,42 +229,13 @@ bool RegionSimplifier::is_legal(Index vertex, Index target) {
            turns_no_triangle(vertex, target);
 }
 
-// The neighbours that both share are exactly the tips of the triangles on the edge, and no triangle joins the tips to
-// the target already; else the collapse would pinch the surface or fold it onto itself. A locked target keeps its
-// texture coordinates, on which the triangles must agree.
+// A locked target keeps its texture coordinates, on which the triangles must agree.
 bool RegionSimplifier::link_is_simple(Index vertex, Index target) {
-    const Index near = ++current_mark_;
-    Index tips[2] = {kNone, kNone}, render[2] = {kNone, kNone};
-    bool simple = true;
-    for_each_corner(vertex, [&](Index corner) {
-        mark_[after(corner)] = near;
-        mark_[before(corner)] = near;
-        if (after(corner) == target) {
-            simple = simple && tips[0] == kNone;
-            tips[0] = before(corner);
-            render[0] = corner_render_[next_in_triangle(corner)];
-        } else if (before(corner) == target) {
-            simple = simple && tips[1] == kNone;
-            tips[1] = after(corner);
-            render[1] = corner_render_[next_in_triangle(next_in_triangle(corner))];
-        }
-    });
+    const EdgeTriangles edge = triangles_on_edge(vertex, target);
     const Index expected = kind_[vertex] == Kind::kBorder ? 1 : 2;
-    if (!simple || (tips[0] != kNone ? 1u : 0u) + (tips[1] != kNone ? 1u : 0u) != expected) return false;
-    if (expected == 2 && kind_[target] == Kind::kLocked && is_seam(render[0], render[1])) return false;
-    const Index seen = ++current_mark_;
-    Index common = 0;
-    bool folds = false;
-    for_each_corner(target, [&](Index corner) {
-        for (const Index neighbour : {after(corner), before(corner)}) {
-            if (mark_[neighbour] != near) continue;
-            mark_[neighbour] = seen;
-            ++common;
-        }
-        folds = folds || (after(corner) == tips[0] && before(corner) == tips[1]) ||
-                (after(corner) == tips[1] && before(corner) == tips[0]);
-    });
-    return common == expected && !folds;
+    if (!edge.simple || edge.count() != expected) return false;
+    if (expected == 2 && kind_[target] == Kind::kLocked && is_seam(edge.render[0], edge.render[1])) return false;
+    return shares_only_tips(target, edge);
 }
 
 // What matters is the mean of all that the triangle's vertices stand for, not how the triangle lay before: noise is
@@ -388,54 +265,34 @@ bool RegionSimplifier::turns_no_triangle(Index vertex, Index target) const {
 }
 
 void RegionSimplifier::collapse(Index vertex, Index target) {
-    Index render = kNone, last = kNone;
+    Index render = kNone;
     ring_.assign(1, target);
     for_each_corner(vertex, [&](Index corner) {
-        last = corner;
         if (after(corner) == target) {
             render = corner_render_[next_in_triangle(corner)];
             if (std::ranges::find(ring_, before(corner)) == ring_.end()) ring_.push_back(before(corner));
         } else if (before(corner) == target) {
             render = corner_render_[next_in_triangle(next_in_triangle(corner))];
             if (std::ranges::find(ring_, after(corner)) == ring_.end()) ring_.push_back(after(corner));
-        } else {
-            return;
         }
-        alive_[corner / 3] = 0;
-        --alive_count_;
-    });
-    for_each_corner(vertex, [&](Index corner) {
-        corner_vertex_[corner] = target;
-        corner_render_[corner] = render;
     });
     const Index end_of_moved = first_corner_[target];
-    next_corner_[last] = end_of_moved;
-    first_corner_[target] = first_corner_[vertex];
+    drop_triangles_on_edge(vertex, target);
+    move_corners(vertex, target, render);
     // Their planes have changed, a sliver's to that of a wide triangle.
-    for (Index moved = first_corner_[vertex]; moved != end_of_moved; moved = next_corner_[moved]) {
+    for (Index moved = first_corner_[target]; moved != end_of_moved; moved = next_corner_[moved]) {
         Index corner = moved;
         for (int k = 0; alive_[moved / 3] && k < 3; ++k, corner = next_in_triangle(corner))
             corner_render_[corner] = suiting(corner, corner_render_[corner]);
     }
-    first_corner_[vertex] = kNone;
-    ++version_[vertex];
+    drop_candidate(vertex);
     --free_;
     merged_[target] = 1;
     quadric_[target] += quadric_[vertex];
     normal_[target] += normal_[vertex];
     for (const Index touched : ring_)
         drop_dead_corners(touched);
-
-    const Index near = ++current_mark_;
-    for (const Index touched : ring_)
-        mark_[touched] = near;
-    for_each_corner(target, [&](Index corner) {
-        for (const Index neighbour : {after(corner), before(corner)}) {
-            if (mark_[neighbour] == near) continue;
-            mark_[neighbour] = near;
-            ring_.push_back(neighbour);
-        }
-    });
+    add_ring(target);
     for (const Index changed : ring_)
         push_candidate(changed);
 }
@@ -456,20 +313,6 @@ std::uint32_t RegionSimplifier::suiting(Index corner, std::uint32_t render) cons
         if (candidate != best && !is_seam(candidate, render) && along(candidate) > along(best)) best = candidate;
     });
     return best;
-}
-
-void RegionSimplifier::drop_dead_corners(Index vertex) {
-    Index* link = &first_corner_[vertex];
-    Index degree = 0;
-    while (*link != kNone) {
-        if (alive_[*link / 3]) {
-            link = &next_corner_[*link];
-            ++degree;
-        } else {
-            *link = next_corner_[*link];
-        }
-    }
-    degree_[vertex] = degree;
 }
 
 // What normals and colours differ by matters by the width of what a vertex stands for, and no more than if that were of

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "preprocess/simplify/attribute_quadric.h"
+#include "preprocess/simplify/collapse_queue.h"
 #include "preprocess/simplify/simplify_patches.h"
 
 #include <Eigen/Geometry>
@@ -27,7 +28,7 @@ struct RegionLevel {
 };
 
 /// One for each thread: its arrays are reused.
-class RegionSimplifier {
+class RegionSimplifier : private CollapseQueue<RegionSimplifier> {
   public:
     /// `shared` has one entry a position: nonzero where others have triangles, too. All three must outlive the
     /// simplifier.
@@ -40,40 +41,25 @@ class RegionSimplifier {
                                       bool keep_topology = true);
 
   private:
-    using Index = std::uint32_t;
-    static constexpr Index kNone = 0xffffffffu;
+    friend CollapseQueue;
     enum class Kind : std::uint8_t { kInner, kBorder, kLocked };
     using Attributes = AttributeQuadric::Attributes;
 
-    // A vertex's cheapest collapse when it was pushed; stale when the version has moved on.
-    struct Candidate {
-        double cost;
-        Index vertex, target;
-        std::uint32_t version;
-        bool legal;  // the target has been checked
-    };
-    struct Target {
-        double cost;
-        Index vertex;
-    };
     // Edges with a triangle on one side only, at a vertex.
     struct OpenEdges {
         Index before = kNone, after = kNone;  // the vertices that they lead from and to
         Index count = 0;
     };
 
-    static bool goes_later(const Candidate& a, const Candidate& b);
     void load(const RegionTriangles& triangles);
     std::vector<std::uint32_t> without_fins(std::span<const std::uint32_t> corners) const;
-    void load_triangle(std::span<const std::uint32_t> corners);
     void weigh_attributes();
     void add_quadrics();
     Kind kind_of(Index vertex);
     OpenEdges open_edges(Index vertex);
     bool is_seam(std::uint32_t a, std::uint32_t b) const;
     void collapse_until(std::size_t triangle_count);
-    void push_candidate(Index vertex);
-    void take(const Candidate& candidate);
+    bool may_move(Index vertex) const { return kind_[vertex] != Kind::kLocked; }
     void list_targets(Index vertex);
     double cost(Index vertex, Index target) const;
     bool is_legal(Index vertex, Index target);
@@ -81,7 +67,6 @@ class RegionSimplifier {
     bool turns_no_triangle(Index vertex, Index target) const;
     void collapse(Index vertex, Index target);
     std::uint32_t suiting(Index corner, std::uint32_t render) const;
-    void drop_dead_corners(Index vertex);
     void measure(RegionLevel& level) const;
     RegionLevel level() const;
     format::Vertex fitted_vertex(Index vertex) const;
@@ -94,14 +79,6 @@ class RegionSimplifier {
     std::uint32_t position_at(std::uint32_t index) const {
         return index < first_own() ? render_.position[index] : own_->position[index - first_own()];
     }
-    Index next_in_triangle(Index corner) const { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-    Index after(Index corner) const { return corner_vertex_[next_in_triangle(corner)]; }
-    Index before(Index corner) const { return corner_vertex_[next_in_triangle(next_in_triangle(corner))]; }
-    template <typename Visitor>
-    void for_each_corner(Index vertex, const Visitor& visit) const {
-        for (Index corner = first_corner_[vertex]; corner != kNone; corner = next_corner_[corner])
-            visit(corner);
-    }
 
     const IndexedMesh& mesh_;
     const RenderVertices& render_;
@@ -109,28 +86,15 @@ class RegionSimplifier {
     const RegionTriangles* own_ = nullptr;
     bool keep_topology_ = true;
 
-    std::vector<Index> local_of_position_;  // kNone outside the current part
     std::size_t attribute_count_ = 0;
     double width_ = 0;                                           // of what a vertex stands for
     double normal_worth_ = 0, colour_worth_ = 0, uv_worth_ = 0;  // as distances
 
-    // One entry a corner; corner / 3 is the triangle.
-    std::vector<Index> corner_vertex_, corner_render_, next_corner_;
-    std::vector<std::uint8_t> alive_;  // one a triangle
-    std::size_t alive_count_ = 0;
-
     // One entry a local vertex.
-    std::vector<Vec3d> position_, normal_;
-    std::vector<Index> mesh_position_, first_corner_, degree_, version_, mark_;
     std::vector<Kind> kind_;
     std::vector<std::uint8_t> merged_;  // stands for more than itself
     std::vector<AttributeQuadric> quadric_;
     std::size_t free_ = 0, least_free_ = 0;  // vertices that are not locked; at how many to end
-
-    std::vector<Candidate> heap_;
-    std::vector<Target> targets_;
-    std::vector<Index> ring_;
-    Index current_mark_ = 0;
 };
 
 }  // namespace splice

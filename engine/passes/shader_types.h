@@ -63,8 +63,9 @@ struct InstanceConstants {
     std::uint32_t surfel_count;
     std::uint32_t first_group;
     std::uint32_t first_word;
+    std::uint32_t first_source;
 };
-static_assert(sizeof(InstanceConstants) == 80);
+static_assert(sizeof(InstanceConstants) == 84);
 
 struct TileUniforms {
     std::uint32_t cells_x;

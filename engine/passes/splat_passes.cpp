@@ -398,7 +398,7 @@ void SplatPasses::set_up(const graph::PassContext& context, const FrameSettings&
         InstanceConstants constants = instance_constants(*job.instance, settings.epsilon_scale);
         constants.surfel_count = job.groups;
         constants.first_group = job.first_group;
-        constants.first_word = job.first_source;
+        constants.first_source = job.first_source;
         if (job.technique == Technique::kTile) constants.flags |= kInstanceTiled;
         if (job.technique == Technique::kRaster) constants.flags |= kInstanceListed;
         programs_.push(context.commands, constants);

@@ -25,7 +25,8 @@ void main() {
     if (surfels) {
         const vec4 normal = subpassLoad(normal_sum) / albedo.a;
         const vec3 position = from_window(gl_FragCoord.xy, decode_depth(normal.w));
-        light = shade(albedo.rgb / albedo.a, normal.xyz * inversesqrt(max(dot(normal.xyz, normal.xyz), 1e-20)), position);
+        light = shade(albedo.rgb / albedo.a, normal.xyz * inversesqrt(max(dot(normal.xyz, normal.xyz), 1e-20)),
+                      position);
     }
     out_colour = vec4(TO_RESOLVE ? light : encode_srgb(light), 1);
 }

@@ -1,6 +1,6 @@
-// Every surfel of the groups that the frame lists becomes the record of its splat, once a frame. Most surfels of a frame are
-// cheap to reject: a workgroup, which is one subgroup, first finds which of its group are not, then works on those with
-// all of its invocations.
+// Every surfel of the groups that the frame lists becomes the record of its splat, once a frame. Most surfels of a
+// frame are cheap to reject: a workgroup, which is one subgroup, first finds which of its group are not, then works on
+// those with all of its invocations.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -22,7 +22,8 @@ layout(local_size_x = 8) in;
 
 layout(constant_id = 5) const bool DEFERRED = false;  // records have normals and albedos instead of lit colours
 
-layout(set = 1, binding = 0) uniform usamplerBuffer surfels;  // format::Surfel, two texels each, or format::PackedSurfel, one
+// format::Surfel, two texels each, or format::PackedSurfel, one.
+layout(set = 1, binding = 0) uniform usamplerBuffer surfels;
 layout(set = 2, binding = 1, rgba32ui) uniform writeonly uimageBuffer records;
 layout(set = 2, binding = 2, rg32ui) uniform writeonly uimageBuffer block_bounds;
 
@@ -149,7 +150,7 @@ void main() {
     const uint workgroup = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (workgroup >= instance.surfel_count) return;
     const uint number = turn_of(workgroup, instance.surfel_count);
-    const uvec2 source = group_sources[instance.first_word + number];
+    const uvec2 source = group_sources[instance.first_source + number];
     // Those of some groups need no look at each: all that is known of them says that they show.
     const bool certain = (source.y & GROUP_SHOWS) != 0;
     const uint first = source.x, end = source.x + (source.y & ~GROUP_SHOWS);

@@ -1,4 +1,5 @@
-// Tile backend: sorts the cells that hold splats into lists. Their order does not matter: cells have no pixel in common.
+// Tile backend: sorts the cells that hold splats into lists. Their order does not matter: cells have no pixel in
+// common.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

@@ -152,9 +152,9 @@ TileSplat read_splat(uint number, const int kind, Tile tile) {
     const SplatSolid solid = unpack_solid(texelFetch(record_texels, solid_texel), last, mine.splat.marks);
     mine.plane.u += solid.plane_offset.x * mine.plane.e;
     mine.plane.v += solid.plane_offset.y * mine.plane.e;
-    mine.solid = solid_in_tile(solid, mine.plane);
+    mine.solid = solid_in_tile(solid);
     if (kind == SOLID) mine.axis = axis_in_tile(mine.solid, mine.place.z);
-    mine.past_clip = mine.solid.past_clip;
+    mine.past_clip = past_clip_in_tile(solid.clip, mine.plane);
     return mine;
 }
 
@@ -184,8 +184,8 @@ Meeting meet(PixelPlane at, const int kind, MetSplat splat, float past_clip) {
     return meeting;
 }
 
-// Splats that touch the tile, of one list of blocks. They are in order, and where there is no room for all of them, they come
-// one run of blocks after the other.
+// Splats that touch the tile, of one list of blocks. They are in order, and where there is no room for all of them,
+// they come one run of blocks after the other.
 struct TileList {
     uint blocks;
     uint begin, end;  // of the blocks whose splats are listed

@@ -193,7 +193,7 @@ TEST_CASE("instance constants have the layout that the shaders declare") {
                         MEMBER(InstanceConstants, epsilon_scale), MEMBER(InstanceConstants, flags),
                         MEMBER(InstanceConstants, first_patch), MEMBER(InstanceConstants, first_surfel),
                         MEMBER(InstanceConstants, surfel_count), MEMBER(InstanceConstants, first_group),
-                        MEMBER(InstanceConstants, first_word)}});
+                        MEMBER(InstanceConstants, first_word), MEMBER(InstanceConstants, first_source)}});
 }
 
 TEST_CASE("tile uniforms have the layout that the shaders declare") {

@@ -31,8 +31,8 @@ vec3 level_colour(uint level) {
     return decode_srgb(mix(vec3(0.9), ramp, 0.7));
 }
 
-// Of level_label() in engine/scene/draw_list.h: of a node's triangles its hue, the paler the coarser; of a patch's grey,
-// the browner the coarser (linear).
+// Of level_label() in engine/scene/draw_list.h: of a node's triangles its hue, the paler the coarser; of a patch's
+// grey, the browner the coarser (linear).
 vec3 triangle_level_colour(uint label) {
     const uint depth = label & 0xffu;
     const float fineness = pow(0.6, float(label >> 8));

@@ -73,7 +73,8 @@ layout(push_constant, std430) uniform InstanceConstants {
     uint first_surfel;      // of the bound surfels
     uint surfel_count;      // of passes over what setup made of them: how many groups
     uint first_group;       // compute: number of the first of their groups
-    uint first_word;        // compute: where in the cells' masks a segment begins; setup: the first of its sources
+    uint first_word;        // gathering: where in the cells' masks a segment begins
+    uint first_source;      // setup: of its groups
 } instance;
 
 #ifdef COPY_UNIFORMS
@@ -91,7 +92,7 @@ struct FrameCopy {
 struct InstanceCopy {
     vec4 model_to_view[3];
     float scale, epsilon_scale;
-    uint flags, first_patch, surfel_count, first_group, first_word;
+    uint flags, first_patch, surfel_count, first_group, first_source;
 } instance_copy;
 
 void copy_uniforms() {
@@ -100,7 +101,7 @@ void copy_uniforms() {
                            frame.shininess, frame.rim, frame.rim_exponent);
     instance_copy = InstanceCopy(instance.model_to_view, instance.scale, instance.epsilon_scale, instance.flags,
                                  instance.first_patch, instance.surfel_count,
-                                 instance.first_group, instance.first_word);
+                                 instance.first_group, instance.first_source);
 }
 #define frame frame_copy
 #define instance instance_copy
@@ -108,7 +109,8 @@ void copy_uniforms() {
 
 vec3 to_view_space(vec3 position) {
     const vec4 p = vec4(position, 1);
-    return vec3(dot(instance.model_to_view[0], p), dot(instance.model_to_view[1], p), dot(instance.model_to_view[2], p));
+    return vec3(dot(instance.model_to_view[0], p), dot(instance.model_to_view[1], p),
+                dot(instance.model_to_view[2], p));
 }
 
 vec3 normal_to_view_space(vec3 normal) {

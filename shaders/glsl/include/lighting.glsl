@@ -1,6 +1,5 @@
-// One light model for triangles (per pixel) and surfels (per surfel): ambient, Lambert; highlights and a rim where asked
-// for.
-// Needs frame.glsl.
+// One light model for triangles (per pixel) and surfels (per surfel): ambient, Lambert; highlights and a rim where
+// asked for. Needs frame.glsl.
 #ifndef SPLICE_LIGHTING_GLSL
 #define SPLICE_LIGHTING_GLSL
 

@@ -1,7 +1,7 @@
 // Point backend: small splats, scattered. An invocation has a splat and visits the few pixels that it may reach, with
 // integer atomics for the depth test and for blending. Integers make both independent of order: the nearest depth is a
-// maximum, sums are fixed point. Whoever includes this defines visit(). Needs frame.glsl, splat.glsl, surfel_frame.glsl,
-// tile.glsl, splat_record.glsl, recorded_splat.glsl, splat_targets.glsl.
+// maximum, sums are fixed point. Whoever includes this defines visit(). Needs frame.glsl, splat.glsl,
+// surfel_frame.glsl, tile.glsl, splat_record.glsl, recorded_splat.glsl, splat_targets.glsl.
 #ifndef SPLICE_POINT_SPLATS_GLSL
 #define SPLICE_POINT_SPLATS_GLSL
 

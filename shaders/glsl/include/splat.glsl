@@ -10,11 +10,11 @@
 // P is the centre (a = 0) unless the disk crosses the near plane; then P is the disk's farthest point (|a| = 1), which
 // projects safely.
 //
-// A flat disk stands for a piece of surface that is not flat. The part of the cylinder over the disk between `below` and
-// `above` its plane (preprocess/model_format/surfel_extent.h) holds all of that piece, and every piece of the surface has
-// its disk. So a ray that meets the surface meets one of these solids, even where it slips between two disks that are
-// tilted against each other: no holes, from any side. A solid that is met beside its disk shows only where no disk does.
-// Needs frame.glsl.
+// A flat disk stands for a piece of surface that is not flat. The part of the cylinder over the disk between `below`
+// and `above` its plane (preprocess/model_format/surfel_extent.h) holds all of that piece, and every piece of the
+// surface has its disk. So a ray that meets the surface meets one of these solids, even where it slips between two
+// disks that are tilted against each other: no holes, from any side. A solid that is met beside its disk shows only
+// where no disk does. Needs frame.glsl.
 #ifndef SPLICE_SPLAT_GLSL
 #define SPLICE_SPLAT_GLSL
 
@@ -36,8 +36,8 @@ struct Splat {
 };
 
 // Disks narrower than this show at the pixel that holds their centre even when they miss its sample. Wider ones cover
-// samples as triangles do: shown at every pixel they touch, they would grow each outline by up to half a pixel (3.5 dB on
-// the thesis's dragon), and a hole-free cover does not need it.
+// samples as triangles do: shown at every pixel they touch, they would grow each outline by up to half a pixel (3.5 dB
+// on the thesis's dragon), and a hole-free cover does not need it.
 const float SPECK = 0.25;  // pixels
 
 // Whether the projected disk is a speck, wide and high.
@@ -96,7 +96,8 @@ vec2 project_to_window(vec3 p) {
 }
 
 // Extremes over the disk of the image coordinate (c + r (s cos + t sin)) / (depth of the same), the roots k of
-// |r (s - k s_d, t - k t_d)| = |c - k d|. `c`, `s`, `t`: one coordinate of centre and tangents; `d`, `sd`, `td`: depths.
+// |r (s - k s_d, t - k t_d)| = |c - k d|. `c`, `s`, `t`: one coordinate of centre and tangents; `d`, `sd`, `td`:
+// depths.
 vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, float r) {
     const float r2 = r * r;
     const float qa = d * d - r2 * (sd * sd + td * td);
@@ -107,12 +108,12 @@ vec2 projected_extremes(float c, float s, float t, float d, float sd, float td, 
 }
 
 const vec3 NO_CLIP = vec3(0, 0, 1);
-// A cut ends where triangles begin, whose corners the rasteriser moves by up to half a 256th of a pixel: a cut reaches a
-// hair farther, or the pixels whose centres lie in between would show neither.
+// A cut ends where triangles begin, whose corners the rasteriser moves by up to half a 256th of a pixel: a cut reaches
+// a hair farther, or the pixels whose centres lie in between would show neither.
 const float CLIP_SLACK = 1.0 / 128.0;  // pixels
 
-// The disk is kept where clip.xy . (u, v) <= clip.z; times e, that is l.d + l0 <= 0. Returns l, l0 and what the change of
-// that a radius along the normal takes.
+// The disk is kept where clip.xy . (u, v) <= clip.z; times e, that is l.d + l0 <= 0. Returns l, l0 and what the change
+// of that a radius along the normal takes.
 vec4 clip_line(vec3 clip, Splat splat) {
     vec2 l = vec2(dot(clip.xy, splat.plane_map.xy), dot(clip.xy, splat.plane_map.zw));
     const float l0 = dot(clip.xy, splat.plane_offset) - clip.z;
@@ -183,7 +184,8 @@ bool make_splat(vec3 centre, vec3 normal, vec3 s, vec3 t, float radius, float ra
     // At the near plane no affine approximation holds; the exact disk alone decides, wherever on the screen that is.
     splat.disk_bounds = crosses_near ? vec4(0, 0, frame.viewport) : splat.disk_bounds;
     const bool exact = crosses_near || (frame.prefilter == 0 && KERNEL_SUPPORT <= 1);
-    // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1; of other kernels with their moment and support.
+    // V = J V_r J^T + I with V_r = r^2 / 2, cut where x^T V^-1 x / 2 = 1; of other kernels with their moment and
+    // support.
     const float filtered = frame.prefilter == 0 ? 1e-4 : PREFILTER;
     const vec3 v = vec3(dot(jx, jx), dot(jx, jy), dot(jy, jy)) * KERNEL_MOMENT + filtered * vec3(1, 0, 1);
     const float determinant = v.x * v.z - v.y * v.y;
@@ -213,15 +215,15 @@ struct SplatHit {
     vec2 plane_uv;
 };
 
-// How (u, v) e changes along the pixel's ray, a radius along the normal; t e changes by skew.z. In perspective skew.xy is
-// where the centre lies along the tangents, in radii, seen from the eye.
+// How (u, v) e changes along the pixel's ray, a radius along the normal; t e changes by skew.z. In perspective skew.xy
+// is where the centre lies along the tangents, in radii, seen from the eye.
 vec2 skew_at(vec3 skew, vec2 uv, float e, float anchor_depth) {
     return ORTHOGRAPHIC ? skew.xy : (uv + skew.xy * e) * (skew.z / anchor_depth);
 }
 
 // A speck that its own pixel's ray misses shows there all the same, else what is behind would bleed through.
-SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset, vec3 skew, vec2 swell,
-                  vec4 clip, bool sub_pixel) {
+SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_depth, vec2 plane_offset, vec3 skew,
+                  vec2 swell, vec4 clip, bool sub_pixel) {
     const vec2 d = pixel - anchor;
     const float gd = dot(g, d);
     const float e = ORTHOGRAPHIC ? 1 : 1 + gd;
@@ -268,8 +270,8 @@ SplatHit cast_ray(vec2 pixel, vec2 anchor, vec4 plane_map, vec2 g, float anchor_
     return hit;
 }
 
-// What is met beside a disk moves away this many times as far as a disk, and weighs this much less, so that disks decide
-// wherever there are any.
+// What is met beside a disk moves away this many times as far as a disk, and weighs this much less, so that disks
+// decide wherever there are any.
 const float BESIDE_PUSH = 4;
 const float BESIDE_WEIGHT = 1.0 / 4096;
 

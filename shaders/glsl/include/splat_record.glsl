@@ -5,7 +5,8 @@
 //   0  anchor, reach around it (halves), z
 //   1  plane_map
 //   2  g, push with the marks in its last bits, rise and blue's change along v (halves)
-//   3  colour, its change along u, its change along v but for blue (halves); deferred: the normal instead, its xyz for rgb
+//   3  colour, its change along u, its change along v but for blue (halves); deferred: the normal instead, its xyz for
+//      rgb
 //   4  skew, climb, plane_offset
 //   5  direction of the clip line, red and green of the albedo, its blue (halves) and the clip line's offset (16 bits),
 //      swell as format::Surfel stores it; of flat splats the albedo alone, where shading is deferred
@@ -81,7 +82,8 @@ vec3 unpack_clip(uvec4 last, uint marks) {
 SplatSolid unpack_solid(uvec4 texel, uvec4 last, uint marks) {
     if (is_flat(marks)) return SplatSolid(vec2(0), 1, vec2(0), vec2(0), NO_CLIP);
     const vec3 depths = uintBitsToFloat(texel.xyz);
-    return SplatSolid(depths.xy, depths.z, decode_extent(last.w).xy, unpackSnorm2x16(texel.w), unpack_clip(last, marks));
+    return SplatSolid(depths.xy, depths.z, decode_extent(last.w).xy, unpackSnorm2x16(texel.w),
+                      unpack_clip(last, marks));
 }
 
 // NO_CLIP included. `swell`: EXTENT_SWELL of the record's extent.

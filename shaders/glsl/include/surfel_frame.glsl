@@ -92,7 +92,8 @@ vec3 surfel_albedo(SurfelRecord record) {
     return view_albedo(decode_srgb(record.colour), finest ? 0 : record.patch_number, true);
 }
 
-// The shading normal, to first order: at the centre, where it is unit, and how it changes along both tangents, a radius.
+// The shading normal, to first order: at the centre, where it is unit, and how it changes along both tangents, a
+// radius.
 struct SurfelNormals {
     vec3 centre, along_u, along_v;
 };

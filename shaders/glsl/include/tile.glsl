@@ -23,8 +23,8 @@ const uint BLOCK = 8;            // splats
 const uint RECORD_TEXELS = 4;    // splat_record.glsl; solids have one more
 const uint SEGMENT_WORDS = 8;    // of a cell's mask
 // Groups of a cell that is gathered at once: finding the blocks of a group, and listing and then seeing, painting and
-// painting what lacks of each of its splats, takes up to 1 + 3 (2 + 8 + 1/4) BLOCKS rounds of loops, some 247; of less than
-// 65,535.
+// painting what lacks of each of its splats, takes up to 1 + 3 (2 + 8 + 1/4) BLOCKS rounds of loops, some 247; of less
+// than 65,535.
 const uint FUSED_GROUPS = 264;
 const uint BLOCKS = GROUP / BLOCK;
 // Splats that a tile lists at once. With 4 bytes a block of its groups they are the 16 KiB that any device shares.
@@ -59,7 +59,8 @@ uint groups_of_cell(uint cell) { return cells[cell] & ~CELL_HAS_CLOSE; }
 // Splats to be rasterised, in the order of their surfels.
 layout(set = 2, binding = 8, std430) buffer SplatList {
     uvec4 draw;    // vertices, instances, the first of each
-    uint first[];  // of each group: how many it has, then where they begin; behind that, at tiles.first_listed - 4, places
+    uint first[];  // of each group: how many it has, then where they begin; behind that, at tiles.first_listed - 4,
+                   // places
 }
 list;
 
@@ -80,8 +81,8 @@ uint cell_count() {
     return tiles.cells_x * tiles.cells_y;
 }
 
-// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, where one of
-// its splats is a solid.
+// Blocks: minimum and, beyond it, maximum x (16 bits each), then y, in pixels; BLOCK_SOLID in the minimum x, where one
+// of its splats is a solid.
 const uint BLOCK_SOLID = 0x8000;
 
 // Whether a block has a splat.

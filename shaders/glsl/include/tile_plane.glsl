@@ -25,8 +25,8 @@ TilePlane plane_in_tile(float z, SplatPlane splat, vec2 d) {
     return plane;
 }
 
-// A speck shows at its own pixel, at its centre's depth, even if the ray misses it, and nowhere else: its place is taken
-// by a disk that faces the eye and meets that pixel's ray at its border, where splats weigh least.
+// A speck shows at its own pixel, at its centre's depth, even if the ray misses it, and nowhere else: its place is
+// taken by a disk that faces the eye and meets that pixel's ray at its border, where splats weigh least.
 const float SPECK_BORDER = 0.999, SPECK_SLOPE = 10;  // radii, and a pixel
 TilePlane speck_in_tile(SplatPlace place, vec2 first_pixel) {
     const vec2 d = first_pixel - (floor(place.anchor) + 0.5);

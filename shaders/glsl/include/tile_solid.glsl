@@ -4,8 +4,7 @@
 #define SPLICE_TILE_SOLID_GLSL
 
 struct TileSolid {
-    vec3 past_clip;     // past_clip_in_tile
-    float clip_change;  // what a gain of 1 towards the axis adds to past_clip; perspective: over e, less past_clip
+    float clip_change;  // what a gain of 1 towards the axis adds to past_clip_in_tile; perspective: over e, less it
     vec2 skew;          // the same of (u, v)
     vec2 h;             // least and largest gain
     float climb;        // orthographic: the same of the depth buffer value
@@ -18,15 +17,15 @@ vec3 past_clip_in_tile(vec3 clip, TilePlane plane) {
     return past_clip;
 }
 
-TileSolid solid_in_tile(SplatSolid solid, TilePlane plane) {
+TileSolid solid_in_tile(SplatSolid solid) {
     const vec2 ends = vec2(-solid.swell.y, solid.swell.x) * (ORTHOGRAPHIC ? 1 : solid.climb);
-    return TileSolid(past_clip_in_tile(solid.clip, plane), dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew,
+    return TileSolid(dot(solid.clip.xy, solid.skew) + (ORTHOGRAPHIC ? 0 : solid.clip.z), solid.skew,
                      vec2(min(ends.x, ends.y), max(ends.x, ends.y)), solid.climb);
 }
 
 TileSolid hand_round(TileSolid mine, uint i) {
-    return TileSolid(subgroupShuffle(mine.past_clip, i), subgroupShuffle(mine.clip_change, i),
-                     subgroupShuffle(mine.skew, i), subgroupShuffle(mine.h, i), subgroupShuffle(mine.climb, i));
+    return TileSolid(subgroupShuffle(mine.clip_change, i), subgroupShuffle(mine.skew, i), subgroupShuffle(mine.h, i),
+                     subgroupShuffle(mine.climb, i));
 }
 
 // `at_clip`: past_clip at the pixel.
@@ -60,8 +59,8 @@ Meeting meet_close_solid(PixelPlane at, TileSolid solid, float at_clip) {
 }
 
 // In perspective the gain G changes (u, v) by G ((u, v) + skew e), past_clip likewise, and z by the factor 1 / (1 + G).
-// With k = G e / (1 + G), of G above LEAST_GAIN, the solid is met where |(u, v) + k skew| <= e - k and past_clip + k clip_change
-// <= 0, at the depth buffer value z (e - k): affine in k, as all of it is in parallel projection.
+// With k = G e / (1 + G), of G above LEAST_GAIN, the solid is met where |(u, v) + k skew| <= e - k and past_clip + k
+// clip_change <= 0, at the depth buffer value z (e - k): affine in k, as all of it is in parallel projection.
 struct TileAxis {
     vec2 skew;
     float steepness;  // |skew|^2

@@ -37,14 +37,15 @@ void leave(int) {}
 
 }  // namespace
 
-WorkersAside::WorkersAside() : processor_(current_processor()) {
+WorkersAside::WorkersAside()
+    : processor_(current_processor()), moves_left_(tbb::this_task_arena::max_concurrency() - 1) {
     observe(true);
     // Starts the workers.
     tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [](int) {});
 }
 
 void WorkersAside::on_scheduler_entry(bool is_worker) {
-    if (is_worker && processor_ >= 0 && current_processor() == processor_) leave(processor_);
+    if (is_worker && processor_ >= 0 && current_processor() == processor_ && moves_left_-- > 0) leave(processor_);
 }
 
 }  // namespace splice

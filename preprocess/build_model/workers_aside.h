@@ -5,10 +5,13 @@
 
 #include <tbb/task_scheduler_observer.h>
 
+#include <atomic>
+
 namespace splice {
 
-/// While it lives, workers of the calling thread's arena that find themselves on that thread's processor move to
-/// another one once, and may run anywhere again afterwards. Has no effect but on speed, and none but on Linux.
+/// While it lives, workers of the calling thread's arena that start on the processor that this thread was on move to
+/// another one, and may run anywhere again afterwards: as many moves as there are workers, because the thread may
+/// itself move in time. Has no effect but on speed, and none but on Linux.
 class WorkersAside final : public tbb::task_scheduler_observer {
   public:
     WorkersAside();
@@ -19,6 +22,7 @@ class WorkersAside final : public tbb::task_scheduler_observer {
 
   private:
     int processor_;  // of the thread that made it
+    std::atomic<int> moves_left_;
 };
 
 }  // namespace splice

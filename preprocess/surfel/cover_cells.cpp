@@ -1,6 +1,6 @@
 // Triangles are bisected across their longest edge until a piece needs few cells of one size; a piece is then cut into
 // rows parallel to its longest edge and each row into trapezoids, so slivers get one row and nothing depends on the
-// neighbours.
+// neighbours. No cell is much longer than wide: a disk covers cells whole, and would grow with them.
 #include "preprocess/surfel/cover_cells.h"
 
 #include "preprocess/surfel/morton.h"

@@ -59,6 +59,9 @@ class CoverCells {
     std::vector<CellChunk> chunks;  // in Morton order
 
   private:
+    // How many cells the side of a cell may lean over, as the triangle's sides do: those of a sliver lean as far as it
+    // is long.
+    static constexpr float kMostSlant = 2.0f;
     static constexpr std::size_t kBranching = 4;
     // The bounding boxes of a node's children side by side, so that one pass of vector instructions tests them all;
     // boxes of absent children are inside out.
@@ -128,22 +131,36 @@ void CoverCells::for_each_cell(const CellChunk& chunk, Visit&& visit) {
     const float length = base.norm();
     const Vec3f u = length > 0 ? Vec3f(base / length) : Vec3f::Zero();
     const float apex_x = apex.dot(u);
-    const Vec3f up = apex - apex_x * u;
-    const int rows = std::max(1, static_cast<int>(std::ceil(up.norm() / chunk.cell_size)));
+    const Vec3f foot = apex_x * u;
+    const int rows = std::max(1, static_cast<int>(std::ceil((apex - foot).norm() / chunk.cell_size)));
+    const float row_height = 1 / static_cast<float>(rows);
+    const bool slanted = std::max(apex_x, length - apex_x) * row_height > kMostSlant * chunk.cell_size;
+
     std::uint32_t cell = chunk.first;
-    for (int row = 0; row < rows; ++row) {
-        const float f0 = static_cast<float>(row) / static_cast<float>(rows);
-        const float f1 = static_cast<float>(row + 1) / static_cast<float>(rows);
-        const Vec3f low = origin + f0 * apex, high = origin + f1 * apex;
-        const Vec3f low_side = (1 - f0) * base, high_side = (1 - f1) * base;
-        const float middle = (1 - (f0 + f1) / 2) * length;
-        const int columns = std::max(1, static_cast<int>(std::ceil(middle / chunk.cell_size)));
+    const auto cut = [&](const Vec3f& low, const Vec3f& low_side, const Vec3f& high, const Vec3f& high_side,
+                         float width) {
+        const int columns = static_cast<int>(std::ceil(width / chunk.cell_size));
         for (int column = 0; column < columns; ++column, ++cell) {
             const float g0 = static_cast<float>(column) / static_cast<float>(columns);
             const float g1 = static_cast<float>(column + 1) / static_cast<float>(columns);
             visit(cell, std::array<Vec3f, 4>{low + g0 * low_side, low + g1 * low_side, high + g0 * high_side,
                                              high + g1 * high_side});
         }
+    };
+    for (int row = 0; row < rows; ++row) {
+        const float f0 = static_cast<float>(row) / static_cast<float>(rows);
+        const float f1 = static_cast<float>(row + 1) / static_cast<float>(rows);
+        const Vec3f low = origin + f0 * apex, high = origin + f1 * apex;
+        const Vec3f low_side = (1 - f0) * base, high_side = (1 - f1) * base;
+        if (!slanted) {
+            cut(low, low_side, high, high_side, std::max((1 - (f0 + f1) / 2) * length, chunk.cell_size));
+            continue;
+        }
+        // What rises, what is level and what falls, each cut across.
+        const Vec3f rise = row_height * foot, fall = row_height * (base - foot);
+        cut(low, rise, low, row_height * apex, row_height * apex_x);
+        cut(low + rise, high_side, high, high_side, (1 - f1) * length);
+        cut(low + rise + high_side, fall, high + high_side, row_height * (base - apex), row_height * (length - apex_x));
     }
 }
 

@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
+#include <numbers>
 #include <random>
 
 using namespace splice;
@@ -215,6 +216,24 @@ TEST_CASE("disks are few and overlap little", "[surfel]") {
         CHECK(set.stats.coverage_mean.value() > 1.5);
         CHECK(set.stats.coverage_mean.value() < 2.6);
     }
+}
+
+TEST_CASE("disks overlap as little on a turned part, whose wall is slivers", "[surfel]") {
+    std::vector<Vec3d> positions;
+    std::vector<Triangle> triangles;
+    constexpr std::uint32_t kSides = 64;
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kSides;
+        const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+        positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+        positions.emplace_back(std::cos(angle), std::sin(angle), 4);
+        triangles.push_back({a, b, a + 1});
+        triangles.push_back({b, b + 1, a + 1});
+    }
+    const IndexedMesh mesh = mesh_of(positions, triangles);
+    const SurfelSet set = sample_patches(mesh, one_patch(mesh), {});
+    CHECK(set.stats.coverage_mean.value() < 2.6);
+    CHECK(set.stats.uncovered == 0);
 }
 
 TEST_CASE("thesis models are covered with at most 2.8 disks a point", "[surfel]") {

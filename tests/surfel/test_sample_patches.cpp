@@ -267,6 +267,25 @@ TEST_CASE("cells tile the patch", "[surfel]") {
     }
 }
 
+TEST_CASE("cells are not much longer than wide, whatever the triangle", "[surfel]") {
+    for (const float height : {1e-5f, 1e-3f, 0.01f, 0.05f, 0.2f}) {
+        for (const float foot : {0.0f, 0.1f, 0.5f, 0.97f, 1.0f}) {
+            INFO("height " << height << " over " << foot);
+            const IndexedMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {foot, height, 0}}, {{0, 1, 2}});
+            const CoverCells cells(
+                mesh, all_triangles(mesh), [](std::uint32_t, const Vec3f&) { return 0.05f; }, 0.2f);
+            double area = 0;
+            float longest = 0;
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                area += static_cast<double>(cells.area[i]);
+                longest = std::max(longest, cells.margin[i] / cells.chunks[cells.chunk_of[i]].cell_size);
+            }
+            CHECK(area == Approx(height / 2));
+            CHECK(longest < 2);
+        }
+    }
+}
+
 TEST_CASE("the search finds exactly the cells that may matter", "[surfel]") {
     const IndexedMesh mesh = repaired(shapes::bumpy_sphere(3000));
     const CoverCells cells(

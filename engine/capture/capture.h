@@ -72,8 +72,8 @@ struct CaptureSettings {
                                               // points by every backend but sprites; none: as the backend chooses
     bool wait_for_data = true;  // of paged models, until all that the frame needs is in memory; else nodes
                                 // of the point tree stand for what is not
-    bool cull_groups = true;    // false: compute passes look at surfels too of which bounds tell that none can be seen;
-                                // the picture is the same
+    bool cull_groups = true;    // false: what bounds of several surfels or triangles tell that none can be seen of is
+                                // looked at, too; the picture is the same
     bool force_quads = false;   // draw every surfel as an oriented quad, none as a point sprite
     friend bool operator==(const CaptureSettings&, const CaptureSettings&) = default;
 };

@@ -185,6 +185,7 @@ void Renderer::Implementation::draw(const Scene& scene, const CaptureSettings& s
         .label_levels = view == View::kLevels,
         .merge_patches = view != View::kPatches,
         .force_quads = settings.force_quads,
+        .cull_groups = settings.cull_groups,
         .max_point_size = device.features().large_points ? static_cast<double>(device.limits().pointSizeRange[1]) : 0,
         .small_px = backend.small_px,
         .boxes_px = view == View::kBoxes ? kSmallBox * antialias : 0,

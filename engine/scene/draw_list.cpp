@@ -22,7 +22,8 @@ class Culler {
         : camera_(camera),
           options_(options),
           draws_(draws),
-          seen_(camera, width, height, draws.model_to_view, draws.scale) {}
+          seen_(camera, width, height, draws.model_to_view, draws.scale),
+          triangle_sight_(camera, width, height, draws.model_to_view, draws.scale, draws.two_sided, kTriangleHorizon) {}
 
     void visit_all() {
         drawn_.assign(draws_.model->patches().size(), false);
@@ -68,11 +69,23 @@ class Culler {
                                        .two_sided = draws_.two_sided,
                                        .triangles_only = options_.surfels_as_triangles});
         for (const PatchGroup& group : groups_.groups)
-            append(draws_.triangles,
-                   {group.level.first_index, group.level.index_count, group.material,
-                    label(group.first_patch, group.number, group.depth)},
-                   true);
+            add_group(group);
         draws_.load += groups_.load;
+    }
+
+    // The runs of a group's triangles of which some may be seen.
+    void add_group(const PatchGroup& group) {
+        const format::Lod& level = draws_.model->lods()[group.level];
+        constexpr std::uint32_t kIndices = 3 * kBoundedTriangles;
+        std::uint32_t first = 0;
+        for (const SurfelBounds& run : draws_.model->triangle_bounds().of(group.level)) {
+            if (!options_.cull_groups || triangle_sight_.of(run) != Sight::kNone)
+                append(draws_.triangles,
+                       {level.first_index + first, std::min(kIndices, level.index_count - first), group.material,
+                        label(group.first_patch, group.number, group.depth)},
+                       true);
+            first += kIndices;
+        }
     }
 
     // Whether surfels come from the point tree; if not, from the patches.
@@ -248,6 +261,7 @@ class Culler {
     const DrawListOptions& options_;
     InstanceDraws& draws_;
     PatchView seen_;
+    SurfelSight triangle_sight_;
     PatchGroups groups_;
     std::vector<bool> drawn_;         // patches, one by one
     std::vector<bool> by_triangles_;  // surfel patches, where the cut chose

@@ -112,6 +112,7 @@ struct DrawListOptions {
     bool label_levels = false;          // ranges of triangles have level_label() in place of a patch
     bool merge_patches = true;          // false: one draw a triangle patch, so that shaders can tell them apart
     bool force_quads = false;
+    bool cull_groups = true;           // see CaptureSettings; of triangles of several patches together
     double max_point_size = 255;       // pixels, of the device
     double small_px = 0;               // patches whose splats are all at most this wide go to InstanceDraws::small
     double boxes_px = 0;               // pixels: fill InstanceDraws::boxes, see node_boxes(); 0: none

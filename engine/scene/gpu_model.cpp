@@ -94,6 +94,7 @@ GpuModel::GpuModel(gpu::Device& device, const ModelView& model, const Paging& pa
       lods_(model.lods.begin(), model.lods.end()),
       octree_(model.octree.begin(), model.octree.end()),
       group_contents_(patch_group_contents(octree_, patches_, lods_)),
+      triangle_bounds_(model),
       hierarchy_(point_hierarchy(tree, model.patches, model.info->max_surfel_radius)),
       surfel_count_(model.surfel_count()),
       paged_(paging.owner && !hierarchy_.empty() && records_of(model).size() > paging.limit),

@@ -9,6 +9,7 @@
 #include "engine/scene/patch_groups.h"
 #include "engine/scene/surfel_pager.h"
 #include "engine/scene/surfel_store.h"
+#include "engine/scene/triangle_bounds.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/descriptor.h"
 #include "engine/vulkan/device.h"
@@ -44,6 +45,7 @@ class GpuModel {
     const std::vector<format::OctreeNode>& octree() const { return octree_; }
     /// One a node of the octree.
     const std::vector<PatchGroupContent>& group_contents() const { return group_contents_; }
+    const TriangleBounds& triangle_bounds() const { return triangle_bounds_; }
     const gpu::Buffer& vertices() const { return vertices_; }
     const gpu::Buffer& indices() const { return indices_; }
     /// All surfels, then what stands for them (merged_levels()).
@@ -88,6 +90,7 @@ class GpuModel {
     std::vector<format::Lod> lods_;
     std::vector<format::OctreeNode> octree_;
     std::vector<PatchGroupContent> group_contents_;
+    TriangleBounds triangle_bounds_;
     PointHierarchy hierarchy_;
     std::vector<format::Surfel> ellipses_;
     std::vector<std::vector<MergedRange>> merged_levels_;

@@ -52,7 +52,7 @@ class Chooser {
             return within == levels.size();
         groups_.load += load;
         groups_.chosen[index] = true;
-        groups_.groups.push_back({.level = level,
+        groups_.groups.push_back({.level = node.first_lod + static_cast<std::uint32_t>(within - 1),
                                   .material = model_.patches()[node.first_patch].material,
                                   .first_patch = node.first_patch,
                                   .depth = depth,

@@ -26,7 +26,7 @@ std::vector<PatchGroupContent> patch_group_contents(std::span<const format::Octr
                                                     std::span<const format::Lod> lods);
 
 struct PatchGroup {
-    format::Lod level;
+    std::uint32_t level;  // GpuModel::lods()
     std::uint32_t material, first_patch;
     std::uint32_t depth;   // of its node in the octree, counted from 1
     std::uint32_t number;  // of its level among the node's, finest first, counted from 0

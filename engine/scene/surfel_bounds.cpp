@@ -2,7 +2,6 @@
 // section 6.2.
 #include "engine/scene/surfel_bounds.h"
 
-#include "engine/scene/splat_reach.h"
 #include "preprocess/model_format/half.h"
 #include "preprocess/model_format/octahedral.h"
 
@@ -67,9 +66,6 @@ SurfelBounds bound(std::span<const format::Surfel> surfels) {
 struct Angle {
     double cosine, sine;
 };
-Angle angle(double radians) {
-    return {std::cos(radians), std::sin(radians)};
-}
 Angle operator+(const Angle& a, const Angle& b) {
     return {a.cosine * b.cosine - a.sine * b.sine, a.sine * b.cosine + a.cosine * b.sine};
 }
@@ -93,13 +89,17 @@ std::vector<SurfelBounds> bound_surfels(const ModelView& model, std::span<const 
 }
 
 SurfelSight::SurfelSight(const Camera& camera, std::uint32_t width, std::uint32_t height,
-                         const glm::dmat4& model_to_view, double scale, bool two_sided)
+                         const glm::dmat4& model_to_view, double scale, bool two_sided, double horizon)
     : model_to_view_(model_to_view),
       scale_(std::abs(scale)),
       translation_(glm::length(glm::dvec3(model_to_view[3]))),
       two_sided_(two_sided),
       orthographic_(camera.orthographic),
       near_plane_(camera.near_plane),
+      least_cosine_(std::cos(std::acos(horizon) - kSlack)),
+      least_sine_(std::sin(std::acos(horizon) - kSlack)),
+      most_cosine_(std::cos(std::acos(horizon) + kSlack)),
+      most_sine_(std::sin(std::acos(horizon) + kSlack)),
       half_((0.5 * glm::dvec2(width, height) + kSetupReach) / pixel_scale(camera, height)),
       to_side_(orthographic_ ? glm::dvec2(1) : 1.0 / glm::sqrt(1.0 + half_ * half_)) {}
 
@@ -128,8 +128,7 @@ Sight SurfelSight::in_frustum(const glm::dvec3& centre, double radius, double re
 // them where beta + spread + alpha is, none where beta - spread - alpha is not; beta between the cone's axis and the
 // ball's centre, alpha what the ball takes.
 Sight SurfelSight::facing(const glm::dvec3& centre, double radius, const SurfelBounds& bounds) const {
-    static const double horizon = std::acos(-kHorizon);
-    static const Angle least = angle(horizon - kSlack), most = angle(horizon + kSlack);
+    const Angle least{least_cosine_, least_sine_}, most{most_cosine_, most_sine_};
     glm::dvec3 away(0, 0, -1);
     Angle alpha{1, 0};
     if (!orthographic_) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/scene/camera.h"
+#include "engine/scene/splat_reach.h"
 #include "preprocess/model_format/model.h"
 
 #include <glm/glm.hpp>
@@ -36,9 +37,10 @@ enum class Sight { kNone, kSome, kAll };
 /// doubt, which rounding in single precision makes wider, kSome.
 class SurfelSight {
   public:
-    /// `scale`: world units a unit-box unit.
+    /// `scale`: world units a unit-box unit. `horizon`: cosine between the normal and the direction from the eye below
+    /// which nothing faces away.
     SurfelSight(const Camera& camera, std::uint32_t width, std::uint32_t height, const glm::dmat4& model_to_view,
-                double scale, bool two_sided);
+                double scale, bool two_sided, double horizon = -kHorizon);
     Sight of(const SurfelBounds& bounds) const;
 
   private:
@@ -49,6 +51,7 @@ class SurfelSight {
     double scale_, translation_;
     bool two_sided_, orthographic_;
     double near_plane_;
+    double least_cosine_, least_sine_, most_cosine_, most_sine_;  // of the horizon's angle, less and more slack
     glm::dvec2 half_;     // of the picture and what splats reach beyond it, at depth 1 or anywhere
     glm::dvec2 to_side_;  // from how far a point is beyond it to the distance from its plane
 };

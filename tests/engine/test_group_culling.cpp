@@ -127,3 +127,27 @@ TEST_CASE("groups of surfels that none is seen of change no byte: packed surfels
             }
     CHECK(culled > 0);
 }
+
+TEST_CASE("runs of a level's triangles that none is seen of change no byte") {
+    Renderer renderer({});
+    const Scene scene = scene_of(renderer.load(view_of(mesh_model())));
+    std::uint64_t left_out = 0, groups = 0;
+    for (const Camera& camera : cameras_around(2))
+        for (const double tau : {1.0, 4.0})
+            for (const Sides sides : {Sides::kOneSided, Sides::kTwoSided}) {
+                CAPTURE(camera.eye.x, camera.eye.y, camera.eye.z, camera.orthographic, tau, name_of(sides));
+                CaptureSettings settings = settings_of(camera);
+                settings.tau = tau;
+                settings.sides = sides;
+                settings.shown = Shown::kTriangles;
+                settings.cull_groups = false;
+                const Frame all = renderer.render(scene, settings);
+                settings.cull_groups = true;
+                const Frame culled = renderer.render(scene, settings);
+                CHECK(culled.rgba == all.rgba);
+                groups += all.stats.cut.counts.groups_by_triangles;
+                left_out += all.stats.triangles_drawn - culled.stats.triangles_drawn;
+            }
+    CHECK(groups > 0);
+    CHECK(left_out > 1000);
+}

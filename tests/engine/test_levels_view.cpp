@@ -52,12 +52,14 @@ std::vector<std::uint32_t> depths_of(const std::vector<format::OctreeNode>& octr
     return depths;
 }
 
-// Labels under which a level that begins at this index may go.
-std::set<std::uint32_t> labels_at(const GpuModel& model, std::uint64_t first_index) {
+// Labels under which what begins at this index of a level may go.
+std::set<std::uint32_t> labels_at(const GpuModel& model, std::uint64_t index) {
     std::set<std::uint32_t> labels;
     const auto add = [&](std::uint32_t first_lod, std::uint32_t count, std::uint32_t depth) {
         for (std::uint32_t number = 0; number < count; ++number)
-            if (model.lods()[first_lod + number].first_index == first_index) labels.insert(number << 8 | depth);
+            if (const format::Lod& lod = model.lods()[first_lod + number];
+                index >= lod.first_index && index - lod.first_index < lod.index_count)
+                labels.insert(number << 8 | depth);
     };
     const std::vector<std::uint32_t> depths = depths_of(model.octree());
     for (std::size_t i = 0; i < depths.size(); ++i)

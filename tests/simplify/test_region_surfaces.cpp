@@ -101,7 +101,7 @@ TEST_CASE("a handle stays a handle where the topology is kept, and may be pinche
     CHECK(triangles_of(pinched.back()) < triangles_of(kept.back()));
 }
 
-TEST_CASE("a triangle and its reverse are a fin, and go; one that is left over stays") {
+TEST_CASE("a triangle and its reverse are a fin, and go, and one that is left over stays") {
     // On flat ground a fin upright on an edge, and elsewhere a triangle twice and its reverse once, which leave one.
     IndexedMesh ground = test::height_field(9, [](float, float) { return 0.0f; });
     const std::vector<Triangle> flat = ground.triangles;

@@ -120,12 +120,16 @@ class Bench {
         CaptureSettings cut = cut_settings(scene, 1), triangles = cut, full = cut;
         triangles.shown = Shown::kTriangles;
         triangles.tau = full.tau = 0;
-        std::vector<Timed> all{{&scene, triangles}, {&scene, full}, {&scene, cut}};
+        CaptureSettings cut_4 = cut, triangles_4 = triangles;
+        cut_4.antialias = triangles_4.antialias = 2;
+        std::vector<Timed> all{
+            {&scene, triangles}, {&scene, full}, {&scene, cut}, {&scene, cut_4}, {&scene, triangles_4}};
         measure(renderer_, all, command_.rounds);
         const ReferenceScene oracle(mesh_);
         const Truth truth = truth_of(oracle, mesh_, scene, cut.camera, cut.width, cut.height,
                                      (baked.model.info.flags & format::kTwoSided) != 0);
-        const std::array<const char*, 3> what{"all triangles", "full detail", "cut"};
+        const std::array<const char*, 5> what{"all triangles", "full detail", "cut", "cut, 4 samples",
+                                              "all triangles, 4 samples"};
         for (std::size_t i = 0; i < all.size(); ++i) {
             const FrameStats& stats = all[i].frame.stats;
             const Agreement found = compare(all[i].frame, truth);

@@ -48,6 +48,15 @@ std::vector<BackendShare> backend_shares(const SurfelBackend& backend, const Dra
     return {{of_others, others}, {of_small, small}};
 }
 
+namespace {
+
+// Whether samples hold what triangles write, where there is nothing else: light.
+bool are_triangles_samples(View view) {
+    return view != View::kNormals && view != View::kAccumulation && view != View::kBoxes;
+}
+
+}  // namespace
+
 graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, FramePasses& passes,
                              const SurfelBackend& backend, const FrameSettings& settings, const Background& background,
                              const DrawList& draws) {
@@ -55,6 +64,23 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
         return graph.create_image(name, {.format = format, .width = settings.width, .height = settings.height});
     };
     const bool several = settings.antialias > 1;
+    const auto resolved = [&](graph::ImageHandle samples) {
+        const graph::ImageHandle picture =
+            graph.create_image("picture", {.format = picture_format(settings.view),
+                                           .width = settings.width / settings.antialias,
+                                           .height = settings.height / settings.antialias});
+        return passes.resolve.add(graph, samples, picture, empty_picture(settings.view, background));
+    };
+    if (several && draws.surfels == 0 && are_triangles_samples(settings.view)) {
+        FrameTargets targets{.triangle_colour = image("samples", kSampleFormat),
+                             .depth = image("depth", passes.formats.depth_stencil),
+                             .accumulation = {},
+                             .normals = {},
+                             .splat_depth = {},
+                             .picture = {}};
+        passes.triangle.add(graph, targets, settings, draws, std::nullopt);
+        return resolved(targets.triangle_colour);
+    }
     FrameTargets targets{
         // Half floats suffice for colours, not for depths.
         .triangle_colour = image("triangle_colour", is_numeric(settings.view) ? VK_FORMAT_R32G32B32A32_SFLOAT
@@ -83,11 +109,7 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
                                     draws.triangles > 0);
     }
     if (settings.view == View::kBoxes) passes.boxes.add(graph, targets, settings, draws);
-    if (!several) return targets.picture;
-    const graph::ImageHandle picture = graph.create_image("picture", {.format = picture_format(settings.view),
-                                                                      .width = settings.width / settings.antialias,
-                                                                      .height = settings.height / settings.antialias});
-    return passes.resolve.add(graph, targets.picture, picture, empty_picture(settings.view, background));
+    return several ? resolved(targets.picture) : targets.picture;
 }
 
 }  // namespace splice

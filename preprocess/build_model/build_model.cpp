@@ -7,10 +7,12 @@
 #include "preprocess/cloud/read_point_cloud.h"
 #include "preprocess/model_format/error.h"
 
-#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
-#include <optional>
+#include <utility>
 
 namespace splice {
 namespace {
@@ -33,16 +35,16 @@ auto timed(const Progress& progress, std::string_view name, double& seconds, con
     return result;
 }
 
-std::optional<tbb::global_control> limit_threads(int threads) {
-    std::optional<tbb::global_control> limit;
-    if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    return limit;
+// In an arena, not under a tbb::global_control: when that ends, the library makes the threads that it held back, and
+// where there is no memory for them it ends the program.
+template <typename Body>
+auto with_threads(int threads, const Body& body) {
+    if (threads <= 0) return body();
+    tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));
+    return arena.execute(body);
 }
 
-}  // namespace
-
-Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
-    const auto limit = limit_threads(options.threads);
+Model build_mesh_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
     const Stopwatch total;
     // Node ids of the merge tree, leaves and merges together, have 32 bits.
     if (mesh.triangles.size() >= 1u << 31) throw Error("a mesh of 2^31 triangles or more cannot be baked");
@@ -79,8 +81,7 @@ Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats
     return model;
 }
 
-Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
-    const auto limit = limit_threads(options.threads);
+Model build_points_model(PointCloud cloud, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
     const Stopwatch total;
     if (options.cluster.representation == ForcedRepresentation::kTriangles)
         throw UsageError("a point cloud has no triangles to draw: leave --representation triangles away");
@@ -114,9 +115,8 @@ Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats&
     return model;
 }
 
-Model bake_file(const std::filesystem::path& path, const BakeOptions& options, BakeStats& stats,
-                const Progress& progress) {
-    const auto limit = limit_threads(options.threads);
+Model read_and_build(const std::filesystem::path& path, const BakeOptions& options, BakeStats& stats,
+                     const Progress& progress) {
     const Stopwatch preparation;
     const WorkersAside workers;
     SourceFile file;
@@ -144,6 +144,22 @@ Model bake_file(const std::filesystem::path& path, const BakeOptions& options, B
     });
     stats.seconds_total += preparation.seconds();
     return build_model(std::move(mesh), options, stats, progress);
+}
+
+}  // namespace
+
+Model build_model(IndexedMesh mesh, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
+    return with_threads(options.threads, [&] { return build_mesh_model(std::move(mesh), options, stats, progress); });
+}
+
+Model build_cloud_model(PointCloud cloud, const BakeOptions& options, BakeStats& stats, const Progress& progress) {
+    return with_threads(options.threads,
+                        [&] { return build_points_model(std::move(cloud), options, stats, progress); });
+}
+
+Model bake_file(const std::filesystem::path& path, const BakeOptions& options, BakeStats& stats,
+                const Progress& progress) {
+    return with_threads(options.threads, [&] { return read_and_build(path, options, stats, progress); });
 }
 
 }  // namespace splice

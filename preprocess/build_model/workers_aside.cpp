@@ -39,6 +39,7 @@ void leave(int) {}
 
 WorkersAside::WorkersAside()
     : processor_(current_processor()), moves_left_(tbb::this_task_arena::max_concurrency() - 1) {
+    if (moves_left_ <= 0) return;
     observe(true);
     // Starts the workers.
     tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [](int) {});

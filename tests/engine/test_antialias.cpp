@@ -193,3 +193,25 @@ TEST_CASE("more samples than the device can draw are refused in one line") {
     settings = straight_on(0);
     CHECK_THROWS_AS(renderer.render(scene, settings), UsageError);
 }
+
+// What triangles write are samples already. A surfel that is hidden sends the same frame through all passes.
+TEST_CASE("samples of triangles alone are resolved at once, to the same bytes") {
+    Renderer renderer({});
+    HandmadeModel triangles = with_edge_at(40.3f, 3), hidden;
+    hidden.add_surfels({{{-0.2f, 0, -0.5f}, {0, 0, 1}, 0.1f, 0.01f}});
+    const auto model = renderer.load(view_of(triangles.model()));
+    for (const View view : {View::kShaded, View::kNormals, View::kPatches, View::kWireframe})
+        for (const bool transparent : {false, true}) {
+            CAPTURE(name_of(view), transparent);
+            Scene alone = scene_of(model);
+            alone.background.transparent = transparent;
+            Scene beside = alone;
+            beside.instances.push_back({renderer.load(view_of(hidden.model())), {}});
+            CaptureSettings settings = straight_on(3);
+            settings.view = view;
+            const Frame direct = renderer.render(alone, settings), through = renderer.render(beside, settings);
+            CHECK(direct.rgba == through.rgba);
+            CHECK(through.stats.surfels_drawn == 1);
+            CHECK(through.stats.passes.size() >= direct.stats.passes.size() + (view == View::kNormals ? 0 : 2));
+        }
+}

@@ -71,6 +71,7 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
                                            .height = settings.height / settings.antialias});
         return passes.resolve.add(graph, samples, picture, empty_picture(settings.view, background));
     };
+    if (backend.techniques) passes.splats.plan(draws, *backend.techniques, settings);
     if (several && draws.surfels == 0 && are_triangles_samples(settings.view)) {
         FrameTargets targets{.triangle_colour = image("samples", kSampleFormat),
                              .depth = image("depth", passes.formats.depth_stencil),
@@ -94,7 +95,6 @@ graph::ImageHandle add_frame(graph::Graph& graph, graph::Bindings& bindings, Fra
 
     if (is_deferred(settings)) targets.normals = image("normals", passes.formats.accumulation);
 
-    if (backend.techniques) passes.splats.plan(draws, *backend.techniques, settings);
     const bool composed = backend.techniques && passes.splats.composes(settings);
     passes.triangle.add(graph, targets, settings, draws,
                         composed ? std::optional(empty_picture(settings.view, background)) : std::nullopt);

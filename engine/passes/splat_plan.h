@@ -58,6 +58,7 @@ struct SetupCounts {
     std::uint64_t groups = 0, surfels = 0;  // sent to setup
     std::uint64_t culled_surfels = 0;       // not sent
     std::uint64_t certain_groups = 0;       // with kGroupShows
+    friend bool operator==(const SetupCounts&, const SetupCounts&) = default;
 };
 
 struct SplatPlan {

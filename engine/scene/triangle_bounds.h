@@ -16,7 +16,8 @@ namespace splice {
 inline constexpr std::uint32_t kBoundedTriangles = 64;
 
 /// Cosine of the angle between a triangle's normal and the direction to it beyond which devices may take it for one
-/// that faces the eye: their coordinates are fractions of a pixel.
+/// that faces the eye, as their coordinates are fractions of a pixel. Of triangles of a tenth of a pixel they may be
+/// wrong by more: single pixels of outlines could differ by what should not have been drawn.
 inline constexpr double kTriangleHorizon = 0.01;
 
 /// Of all levels of an octree's nodes.

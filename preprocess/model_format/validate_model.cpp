@@ -169,6 +169,7 @@ class Validator {
         }
         const ModelInfo& info = *view_.info;
         require(surfel == view_.surfel_count(), info, view_.surfel_count(), " surfels, the patches have ", surfel);
+        std::uint64_t of_nodes = 0;  // what is made for nodes' levels is as much as they have
         for (const OctreeNode& node : view_.octree) {
             if (node.lod_count == 0) {
                 require(node.first_lod == 0, node.first_lod, "octree node without levels names one");
@@ -179,6 +180,10 @@ class Validator {
             require(node.lod_count <= view_.lods.size() - lod, node.lod_count, node.lod_count,
                     " levels in an octree node, ", view_.lods.size() - lod, " are left");
             check_lods(view_.lods.subspan(lod, node.lod_count));
+            for (const Lod& level : view_.lods.subspan(lod, node.lod_count))
+                of_nodes += level.index_count;
+            require(of_nodes <= view_.indices.size(), node.lod_count, "octree nodes' levels have more than the ",
+                    view_.indices.size(), " indices there are");
             lod += node.lod_count;
         }
         require(lod == view_.lods.size(), info, view_.lods.size(), " levels, the patches and octree nodes have ", lod);

@@ -24,8 +24,15 @@ constexpr int kSteps = 3;
 
 constexpr int kRounds = 6;
 
-// Of a vertex's weight: how much it holds on to what its quadric gave it, which decides where few samples are.
+// Of a vertex's weight, or of what even samples would give it, if that is more: how much it holds on to what its
+// quadric gave it, which decides where few samples are.
 constexpr double kHold = 0.05;
+
+// Cosine between a fitted normal and the quadric's, below which the fit is not trusted.
+constexpr float kLeastCosine = 0.7f;
+
+// Squared, in the longest of the edges around: what lies farther off has no triangle, as of a part that is gone.
+constexpr float kFarthest = 4;
 
 std::uint32_t next_in_triangle(std::uint32_t corner) {
     return corner % 3 == 2 ? corner - 2 : corner + 1;
@@ -131,6 +138,8 @@ class NearestTriangles {
         return hits;
     }
 
+    double area(std::uint32_t triangle) const { return static_cast<double>(triangles_[triangle].cross.norm()) / 2; }
+
   private:
     // Makes corners indices of the points.
     static Points points_at(const IndexedMesh& mesh, std::vector<std::uint32_t>& corners) {
@@ -152,6 +161,7 @@ class NearestTriangles {
             float distance = 0;
             tree_.knnSearch(sample.position.data(), 1, &vertex, &distance);
             near = look_around(sample, vertex);
+            if (!(near.distance < kFarthest * near.width)) near.hit = {};
         }
         vertex = near.vertex;
         return near.hit;
@@ -226,6 +236,7 @@ class LeastSquares {
           corners_of_(level.vertices.size(), level.corners.size(),
                       [&](std::uint32_t corner) { return own(level.corners[corner]); }),
           weight_(level.vertices.size(), 0),
+          even_weight_(level.vertices.size(), 0),
           right_(level.vertices.size(), Value::Zero()),
           shared_weight_(level.corners.size(), 0) {
         for (const format::Vertex& vertex : level.vertices)
@@ -246,19 +257,27 @@ class LeastSquares {
         }
     }
 
+    /// `share`: of the surface's samples that are used.
+    void expect(std::uint32_t triangle, double area, double share) {
+        for (std::uint32_t k = 0; k < 3; ++k)
+            if (const std::uint32_t vertex = own(level_.corners[3 * triangle + k]); vertex != kNone)
+                even_weight_[vertex] += share * area / 6;
+    }
+
     template <typename Changes>
     void solve(const Changes& changes) {
         const std::vector<Value> before = solution_;
         for (int round = 0; round < kRounds; ++round)
             for (std::size_t vertex = 0; vertex < solution_.size(); ++vertex) {
                 if (!(weight_[vertex] > 0) || !changes(vertex)) continue;
-                Value sum = right_[vertex] + kHold * weight_[vertex] * before[vertex];
+                const double hold = kHold * std::max(weight_[vertex], even_weight_[vertex]);
+                Value sum = right_[vertex] + hold * before[vertex];
                 for (const std::uint32_t corner : corners_of_.of(vertex)) {
                     const std::uint32_t next = next_in_triangle(corner), previous = next_in_triangle(next);
                     sum -= shared_weight_[corner] * value_at(level_.corners[next]) +
                            shared_weight_[previous] * value_at(level_.corners[previous]);
                 }
-                solution_[vertex] = sum / ((1 + kHold) * weight_[vertex]);
+                solution_[vertex] = sum / (weight_[vertex] + hold);
             }
     }
 
@@ -274,8 +293,9 @@ class LeastSquares {
     const RenderVertices& vertices_;
     const RegionTriangles& level_;
     std::uint32_t first_own_;
-    Rows corners_of_;             // of each own vertex
-    std::vector<double> weight_;  // the diagonal
+    Rows corners_of_;                  // of each own vertex
+    std::vector<double> weight_;       // the diagonal
+    std::vector<double> even_weight_;  // the same of samples that are spread evenly: a sixth of the area around
     std::vector<Value> right_, solution_;
     std::vector<double> shared_weight_;  // of each corner: its vertex with the next one's
 };
@@ -300,9 +320,13 @@ void fit_attributes(const IndexedMesh& mesh, const RenderVertices& vertices, std
     std::vector<std::uint32_t> places;
     for (const std::uint32_t index : level.corners)
         places.push_back(index < first_own ? vertices.position[index] : level.position[index - first_own]);
+    if (level.corners.empty()) return;
     const std::size_t step = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
-    const std::vector<NearestTriangles::Hit> hits = NearestTriangles(mesh, std::move(places)).of(samples, step);
+    const NearestTriangles nearest(mesh, std::move(places));
+    const std::vector<NearestTriangles::Hit> hits = nearest.of(samples, step);
     LeastSquares fit(vertices, level);
+    for (std::uint32_t triangle = 0; triangle < level.corners.size() / 3; ++triangle)
+        fit.expect(triangle, nearest.area(triangle), 1 / static_cast<double>(step));
     for (std::size_t i = 0; i < hits.size(); ++i)
         if (hits[i].triangle != kNone) fit.add(hits[i], samples[step * i]);
     fit.solve([&](std::size_t vertex) { return shared[level.position[vertex]] == 0; });
@@ -310,7 +334,8 @@ void fit_attributes(const IndexedMesh& mesh, const RenderVertices& vertices, std
         if (shared[level.position[i]] != 0) continue;
         format::Vertex& vertex = level.vertices[i];
         const Vec3f normal = fit.at(i).head<3>().cast<float>(), colour = fit.at(i).tail<3>().cast<float>();
-        if (normal.norm() > 0) vertex.normal = encode_octahedral(normal.x(), normal.y(), normal.z());
+        if (!(normal.normalized().dot(normal_of(vertex)) > kLeastCosine)) continue;
+        vertex.normal = encode_octahedral(normal.x(), normal.y(), normal.z());
         if (mesh.has_colours)
             vertex.colour =
                 rgba8_from_linear({colour[0], colour[1], colour[2], static_cast<float>(vertex.colour >> 24) / 255});

@@ -8,6 +8,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -39,6 +40,9 @@ constexpr std::uint64_t kKeepTopology = 20'000;
 // Samples of the surface for each triangle that stands for it, at most.
 constexpr std::size_t kSamples = 8;
 
+// Where fewer of the finest triangles are to one of a level, there is little between its vertices to fit.
+constexpr std::size_t kLeastSamples = 2;
+
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 class Simplifier {
@@ -68,6 +72,7 @@ class Simplifier {
             if (progress)
                 progress("levels", 1 - static_cast<double>(depth) / static_cast<double>(depth_begin.size() - 1));
         }
+        samples_ = {};
         RegionLods result;
         result.level_begin.push_back(0);
         for (const std::vector<RegionLevel>& node : levels_) {
@@ -147,10 +152,14 @@ class Simplifier {
             level.shape_error = left.shape_error = std::max(left.shape_error, std::hypot(level.shape_error, below));
             level.looks_error = left.looks_error = std::max(left.looks_error, level.looks_error);
         }
-        tbb::parallel_for(std::size_t{0}, coarser.size(), [&](std::size_t i) {
-            RegionTriangles& triangles = coarser[i].triangles;
-            fit_attributes(mesh_, vertices_, samples_of(index), kSamples * triangles.corners.size() / 3, context.shared,
-                           triangles);
+        // A thread that waits must not begin another node meanwhile: that would take this one's simplifier.
+        tbb::this_task_arena::isolate([&] {
+            tbb::parallel_for(std::size_t{0}, coarser.size(), [&](std::size_t i) {
+                RegionTriangles& triangles = coarser[i].triangles;
+                const std::size_t count = triangles.corners.size() / 3;
+                if (samples_of(index).size() < kLeastSamples * count) return;
+                fit_attributes(mesh_, vertices_, samples_of(index), kSamples * count, context.shared, triangles);
+            });
         });
         left.triangles = coarser.back().triangles;
         const bool got_somewhere = static_cast<double>(left.triangles.corners.size()) < kGetsSomewhere * before;
@@ -231,6 +240,8 @@ class Simplifier {
             return triangles > std::min(kRootTriangles, mesh_.triangles.size() / kRootShare);
         };
         const auto least = std::ranges::partition_point(errors, has_too_many);
+        for (Left& left : left_)
+            left = {};
         visit_within(
             0, least == errors.end() ? errors.back() : *least, [&](const RegionView& part) { add(part, left_[0]); },
             [&](std::uint32_t place) { add_finest(place, left_[0].triangles); });

@@ -1,7 +1,8 @@
 // Triangle levels of detail across patches. Inside patches alone, locked borders leave most of a small patch's
 // triangles where they are; here the patches of a node of the octree are simplified together, with only the node's own
 // border locked, and upwards so on: each node goes on from what is left of its children, whose borders become its
-// inside. Neighbours share the border's finest edges whatever level or patch is drawn of each, so nothing cracks.
+// inside; the root from levels that are fine enough for the whole to be looked at. Neighbours share the border's finest
+// edges whatever level or patch is drawn of each, so nothing cracks.
 #pragma once
 
 #include "preprocess/model_format/model_format.h"

@@ -209,7 +209,8 @@ TEST_CASE("samples of triangles alone are resolved at once, to the same bytes") 
             beside.instances.push_back({renderer.load(view_of(hidden.model())), {}});
             CaptureSettings settings = straight_on(3);
             settings.view = view;
-            const Frame direct = renderer.render(alone, settings), through = renderer.render(beside, settings);
+            const Frame through = renderer.render(beside, settings), direct = renderer.render(alone, settings);
+            CHECK(direct.stats.setup == SetupCounts{});
             CHECK(direct.rgba == through.rgba);
             CHECK(through.stats.surfels_drawn == 1);
             CHECK(through.stats.passes.size() >= direct.stats.passes.size() + (view == View::kNormals ? 0 : 2));

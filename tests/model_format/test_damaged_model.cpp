@@ -227,6 +227,13 @@ TEST_CASE("octrees with cycles, gaps or lies are refused") {
                Contains("2 levels in an octree node, 1 are left"));
     CHECK_THAT(with_level([](Model& m) { m.lods.back().index_count = 7; }), Contains("no whole triangles"));
     CHECK_THAT(with_level([](Model& m) { m.lods.back().first_index = 1u << 30; }), Contains("leaves the"));
+    // Many levels of the same triangles.
+    CHECK_THAT(with_level([](Model& m) {
+                   while (m.lods.size() < 40)
+                       m.lods.push_back(m.lods.back());
+                   m.octree[2].lod_count = 37;
+               }),
+               Contains("octree nodes' levels have more than"));
     CHECK_THAT(with_level([](Model& m) {
                    std::swap(m.octree[0].lod_count, m.octree[2].lod_count);
                    std::swap(m.octree[0].first_lod, m.octree[2].first_lod);
